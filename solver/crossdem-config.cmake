@@ -1,0 +1,5 @@
+include(CMakeFindDependencyMacro)
+enable_language(C)
+find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(HDF5 COMPONENTS C)
+include(${CMAKE_CURRENT_LIST_DIR}/crossdem-targets.cmake)

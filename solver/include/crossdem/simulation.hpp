@@ -1,0 +1,89 @@
+#pragma once
+// One simulation: particles in a container, with or without the bar, moved step by step by the scheme of the case.
+
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "crossdem/case.hpp"
+#include "crossdem/state.hpp"
+
+namespace crossdem {
+
+/// A run that went wrong while running: what happened, to which particle, when.
+class SimulationError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Force of the particles on the bar [N], +y up, as evaluated in the latest step.
+struct BarForce {
+  Vector2 tip = Vector2::Zero();    // contacts at the bottom face and its corners
+  Vector2 shaft = Vector2::Zero();  // contacts at the sides
+};
+
+/// Impulses that the particles have received since the start [N s]. Their sum is the change of momentum.
+struct MomentumLedger {
+  Vector2 left_wall = Vector2::Zero();
+  Vector2 right_wall = Vector2::Zero();
+  Vector2 floor = Vector2::Zero();
+  Vector2 bar = Vector2::Zero();
+  Vector2 weight = Vector2::Zero();
+  Vector2 change = Vector2::Zero();  // of sum m v
+
+  /// Zero but for rounding, whatever the time step.
+  [[nodiscard]] Vector2 residual() const { return change - (left_wall + right_wall + floor + bar + weight); }
+};
+
+/// Where energy is and went since the start [J].
+struct EnergyLedger {
+  double kinetic = 0.0;           // now
+  double spring = 0.0;            // now, e_n^2 / 2 k_n + e_s^2 / 2 k_s
+  double potential_change = 0.0;  // of sum m g y
+  double kinetic_change = 0.0;
+  double spring_change = 0.0;
+  double bar_work = 0.0;      // done by the bar on the particles
+  double contact_work = 0.0;  // sum of f_n du_n + f_s du_s: what contacts took up
+
+  /// Lost in dashpots, sliding and emptied springs.
+  [[nodiscard]] double dissipated() const { return contact_work - spring_change; }
+  /// What the integrator itself adds (> 0) or takes; vanishes with the time step.
+  [[nodiscard]] double integration() const { return kinetic_change + potential_change + contact_work - bar_work; }
+};
+
+struct World;  // all that a step reads and writes
+
+class Simulation {
+ public:
+  /// `particles` with their positions and velocities; `bar_tip`: y of the bar's bottom face [m], none without a bar.
+  /// Particles that overlap at the start are old contacts: normal spring k_n x overlap, shear spring zero.
+  Simulation(const Case& setup, Particles particles, std::optional<double> bar_tip);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// Makes `steps` steps. Throws SimulationError; the state is then the one that went wrong.
+  void advance(long steps);
+
+  /// From the next step on the bar moves.
+  void start_bar();
+
+  /// Throws SimulationError on positions that are not finite, on a particle that went through a wall, and on a kinetic
+  /// energy beyond anything that weight and bar could have given. Also called whenever neighbours are searched.
+  void check() const;
+
+  [[nodiscard]] const Particles& particles() const;
+  [[nodiscard]] double bar_tip() const;  // [m]
+  [[nodiscard]] BarForce bar_force() const;
+  [[nodiscard]] MomentumLedger momentum_ledger() const;
+  [[nodiscard]] EnergyLedger energy_ledger() const;
+  [[nodiscard]] long steps() const;
+
+  /// Pairs of particles whose centre distance is below the sum of their radii; walls do not count.
+  [[nodiscard]] std::size_t contacts() const;
+
+ private:
+  std::unique_ptr<World> world_;
+};
+
+}  // namespace crossdem

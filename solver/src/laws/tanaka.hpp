@@ -1,0 +1,88 @@
+#pragma once
+// The contact law of Tanaka et al. (2000), Eqs. (3)-(9).
+
+#include <algorithm>
+#include <cmath>
+
+#include "../contact_law.hpp"
+
+namespace crossdem {
+
+/// The default readings, known to the compiler: the law and the step they enter hold no branch for the others.
+struct DefaultReadings {
+  static constexpr Readings of_default{};
+  static constexpr auto first_contact_normal = of_default.first_contact_normal;
+  static constexpr auto first_contact_shear = of_default.first_contact_shear;
+  static constexpr auto lost_contact = of_default.lost_contact;
+  static constexpr auto attraction = of_default.attraction;
+  static constexpr auto normal_spring = of_default.normal_spring;
+  static constexpr auto dashpot_velocity = of_default.dashpot_velocity;
+  static constexpr auto bar_corner = of_default.bar_corner;
+};
+
+/// `Choice` is DefaultReadings, or Readings for any others.
+template <class Choice>
+struct TanakaLaw {
+  Choice readings;
+
+  /// The force of a contact that overlaps; `spring` is its memory and is brought up to date.
+  ContactForce force(RelativeDisplacement u, const ContactParameters& p, double dt, ContactSpring& spring) const {
+    if (!spring.touching) {
+      u = share_in_contact(u);
+      spring = {.touching = true};
+    }
+    if (readings.normal_spring == NormalSpring::incremental) {
+      spring.normal += p.normal_stiffness * u.normal;  // Eq. (5)
+    } else {
+      spring.normal = p.normal_stiffness * u.overlap;
+    }
+    if (spring.normal < 0.0) return lose(spring);  // Eq. (8)
+
+    ContactForce f;
+    f.normal = spring.normal + p.normal_damping * u.damped_normal / dt;  // Eq. (6)
+    if (readings.attraction == Attraction::clipped) f.normal = std::max(f.normal, 0.0);
+
+    spring.shear += p.shear_stiffness * u.shear;
+    const double slip_force = p.friction * spring.normal;
+    if (std::abs(spring.shear) > slip_force) {
+      f.shear = spring.shear = std::copysign(slip_force, spring.shear);  // Eq. (9)
+    } else {
+      f.shear = spring.shear + p.shear_damping * u.damped_shear / dt;  // Eq. (7)
+    }
+    return f;
+  }
+
+ private:
+  /// Eqs. (3), (4): at first contact only the share of the step spent in contact counts.
+  RelativeDisplacement share_in_contact(RelativeDisplacement u) const {
+    double share = 0.0;
+    if (readings.first_contact_shear == FirstContactShear::clamped_share) {
+      share = u.normal > 0.0 ? std::min(u.overlap / u.normal, 1.0) : 0.0;
+    } else if (u.normal != 0.0) {
+      share = u.overlap / u.normal;
+    }
+    u.shear *= share;
+    u.normal = u.overlap;
+    if (readings.dashpot_velocity == DashpotVelocity::averaged_displacement) {
+      u.damped_shear *= share;
+      if (readings.first_contact_normal == FirstContactNormal::spring_and_dashpot) u.damped_normal = u.overlap;
+    }
+    return u;
+  }
+
+  /// Eq. (8): no tension in the spring; what is left of the contact's memory is a reading.
+  ContactForce lose(ContactSpring& spring) const {
+    if (readings.lost_contact == LostContact::forget) {
+      spring = {};
+    } else if (readings.lost_contact == LostContact::keep_zero) {
+      spring = {.touching = true};
+    } else {
+      spring.shear = 0.0;
+    }
+    return {};
+  }
+};
+
+static_assert(ContactLaw<TanakaLaw<DefaultReadings>> && ContactLaw<TanakaLaw<Readings>>);
+
+}  // namespace crossdem

@@ -1,0 +1,122 @@
+#include "crossdem/packing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "crossdem/simulation.hpp"
+
+namespace crossdem {
+namespace {
+
+constexpr long steps_between_looks = 100;
+
+/// The standard's distributions differ between libraries; this one gives the same bits everywhere.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double within(double half_width) {
+    return half_width * (2.0 * (static_cast<double>(engine_() >> 11U) * 0x1p-53) - 1.0);
+  }
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Radii in random order, their numbers as close to the shares as whole numbers can be.
+std::vector<double> shuffled_radii(const ParticleMix& mix, Random& random) {
+  std::vector<double> radii;
+  double wanted = 0.0;
+  for (std::size_t k = 0; k < mix.diameters.size(); ++k) {
+    wanted += mix.count * mix.number_shares[k];
+    const bool last = k + 1 == mix.diameters.size();
+    radii.resize(static_cast<std::size_t>(last ? mix.count : std::lround(wanted)), mix.diameters[k] / 2);
+  }
+  for (std::size_t k = radii.size(); k > 1; --k) std::swap(radii[k - 1], radii[random.below(k)]);
+  return radii;
+}
+
+Particles jittered_lattice(const Case& setup, std::uint64_t seed) {
+  Random random(seed);
+  const std::vector<double> radii = shuffled_radii(setup.particles, random);
+  const double largest = *std::max_element(radii.begin(), radii.end());
+  const PackingRecipe& recipe = setup.packing;
+  const double margin = largest + recipe.jitter;  // of the outer centres from the walls
+  const double free_width = setup.container.width - 2 * margin;
+  const std::size_t columns = 1 + static_cast<std::size_t>(free_width / recipe.lattice_spacing);
+  const double left = margin + 0.5 * (free_width - static_cast<double>(columns - 1) * recipe.lattice_spacing);
+
+  Particles particles;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const Vector2 node(left + static_cast<double>(i % columns) * recipe.lattice_spacing,
+                       margin + static_cast<double>(i / columns) * recipe.lattice_spacing);
+    const double dx = random.within(recipe.jitter);
+    const double dy = random.within(recipe.jitter);
+    const double vx = random.within(recipe.velocity);
+    const double vy = random.within(recipe.velocity);
+    particles.add(radii[i], setup.disc_mass(radii[i]), node + Vector2(dx, dy), Vector2(vx, vy));
+  }
+  return particles;
+}
+
+}  // namespace
+
+Packing make_packing(const Case& setup, std::uint64_t seed) {
+  Case settling = setup;
+  settling.time.step = setup.packing.step;
+  settling.particle_wall.friction = setup.packing.wall_friction;
+  // The lattice is higher than the container; what falls from it may be faster than the container's height explains.
+  const Particles lattice = jittered_lattice(setup, seed);
+  settling.container.height = std::max(setup.container.height, 2 * lattice.position.back().y());
+
+  Simulation simulation(settling, lattice, std::nullopt);
+  const auto elapsed = [&] { return static_cast<double>(simulation.steps()) * settling.time.step; };
+  double energy = 0.0;
+  do {
+    simulation.advance(steps_between_looks);
+    simulation.check();
+    energy = kinetic_energy(simulation.particles());
+    if (elapsed() > setup.packing.longest_settling) {
+      throw SimulationError("the bed of seed " + std::to_string(seed) +
+                            " did not settle: its kinetic energy is still " + std::to_string(energy * 1e9) +
+                            " nJ; try a smaller packing.step_s");
+    }
+  } while (elapsed() < setup.packing.settling || energy >= setup.packing.kinetic_energy);
+
+  const Particles& bed = simulation.particles();
+  Packing packing{.seed = seed,
+                  .radius = bed.radius,
+                  .position = bed.position,
+                  .bar_tip = touching_height(setup.bar, bed.radius, bed.position),
+                  .contacts = simulation.contacts(),
+                  .kinetic_energy = energy,
+                  .settling = elapsed()};
+  for (std::size_t i = 0; i < bed.count(); ++i)
+    packing.bed_height = std::max(packing.bed_height, bed.position[i].y() + bed.radius[i]);
+  if (packing.bed_height > setup.container.height) {
+    throw CaseError({"particles.count: the bed does not fit: settled it is " + std::to_string(packing.bed_height) +
+                     " m high in a container of " + std::to_string(setup.container.height) + " m"});
+  }
+  return packing;
+}
+
+double touching_height(const BarGeometry& bar, const std::vector<double>& radius,
+                       const std::vector<Vector2>& position) {
+  double height = 0.0;
+  for (std::size_t i = 0; i < radius.size(); ++i) {
+    const double beside = std::max(0.0, std::abs(position[i].x() - bar.centre_x) - bar.width / 2);
+    if (beside < radius[i])
+      height = std::max(height, position[i].y() + std::sqrt(radius[i] * radius[i] - beside * beside));
+  }
+  return height;
+}
+
+Particles at_rest(const Packing& packing, const Case& setup) {
+  Particles particles;
+  for (std::size_t i = 0; i < packing.radius.size(); ++i)
+    particles.add(packing.radius[i], setup.disc_mass(packing.radius[i]), packing.position[i], Vector2::Zero());
+  return particles;
+}
+
+}  // namespace crossdem

@@ -1,0 +1,63 @@
+#include "crossdem/run.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "crossdem/version.hpp"
+#include "recorder.hpp"
+
+namespace crossdem {
+namespace {
+
+long steps_of(double interval, double step) { return std::lround(interval / step); }
+
+}  // namespace
+
+void run(const Case& setup, const Packing& packing, const std::filesystem::path& folder) {
+  const double dt = setup.time.step;
+  const long total = steps_of(setup.time.penetration, dt);
+  const long per_sample = steps_of(setup.time.sample_interval, dt);
+  const long per_frame = steps_of(setup.time.frame_interval, dt);
+  const long between_outputs = std::gcd(per_sample, per_frame);
+
+  Simulation simulation(setup, at_rest(packing, setup), packing.bar_tip);
+  MotionFile motion(folder / "motion.h5", setup, simulation.particles());
+  ResistanceFile resistance(folder / "resistance.csv");
+  LedgerFile ledger(folder / "ledger.csv");
+
+  for (long left = steps_of(setup.time.rest, dt); left > 0; left -= per_sample) {
+    simulation.advance(std::min(left, per_sample));
+    simulation.check();
+  }
+  const long rest_steps = simulation.steps();
+  simulation.start_bar();
+
+  long frames = 0;
+  long samples = 0;
+  for (long step = 0;; step += between_outputs) {
+    simulation.check();
+    // From the interval's count, not by adding steps: engines with other time steps must write the same times.
+    if (step % per_sample == 0) {
+      const double time = static_cast<double>(step / per_sample) * setup.time.sample_interval;
+      resistance.row(time, setup.bar.speed * time, simulation);
+      ledger.row(time, simulation);
+      ++samples;
+    }
+    if (step % per_frame == 0) {
+      const double time = static_cast<double>(step / per_frame) * setup.time.frame_interval;
+      motion.frame(step, time, simulation.bar_tip(), simulation.particles());
+      ++frames;
+    }
+    if (step == total) break;
+    simulation.advance(between_outputs);
+  }
+
+  const nlohmann::json done = {{"completed", true},          {"engine", "native"},
+                               {"version", version_line()},  {"rest_steps", rest_steps},
+                               {"penetration_steps", total}, {"particles", simulation.particles().count()},
+                               {"frames", frames},           {"samples", samples}};
+  LineFile(folder / "run.json").line(done.dump(2));
+}
+
+}  // namespace crossdem

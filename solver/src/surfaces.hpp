@@ -1,0 +1,46 @@
+#pragma once
+// The rigid surfaces that particles can touch: three walls of the container, and the bar.
+
+#include <array>
+#include <optional>
+
+#include "bar.hpp"
+
+namespace crossdem {
+
+enum class Surface : unsigned char { left, right, floor, bar };
+inline constexpr std::array all_surfaces{Surface::left, Surface::right, Surface::floor, Surface::bar};
+
+/// The surfaces as one thing that can be asked for the nearest point of each.
+struct Surfaces {
+  double width = 0.0;      // [m], of the container
+  std::optional<Bar> bar;  // none while a bed settles
+
+  [[nodiscard]] bool present(Surface surface) const { return surface != Surface::bar || bar.has_value(); }
+
+  [[nodiscard]] NearestPoint nearest_point(Surface surface, const Vector2& centre) const {
+    switch (surface) {
+      case Surface::left:
+        return {{-1.0, 0.0}, centre.x()};
+      case Surface::right:
+        return {{1.0, 0.0}, width - centre.x()};
+      case Surface::floor:
+        return {{0.0, -1.0}, centre.y()};
+      case Surface::bar:
+        break;
+    }
+    return bar->nearest_point(centre);
+  }
+
+  /// [m], of the last step.
+  [[nodiscard]] Vector2 displacement(Surface surface) const {
+    return surface == Surface::bar ? bar->displacement() : Vector2::Zero();
+  }
+
+  /// Centre beyond a wall or inside the bar: no contact law brings it back.
+  [[nodiscard]] bool lost(const Vector2& centre) const {
+    return centre.x() < 0.0 || centre.x() > width || centre.y() < 0.0 || (bar && bar->contains(centre));
+  }
+};
+
+}  // namespace crossdem

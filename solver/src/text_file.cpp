@@ -1,0 +1,35 @@
+#include "text_file.hpp"
+
+#include <array>
+#include <charconv>
+#include <sstream>
+
+namespace crossdem {
+
+std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error) && std::filesystem::file_size(path, error) > most_bytes)
+    throw FileError(path, "is larger than " + std::to_string(most_bytes) + " bytes");
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  if (!in || std::filesystem::is_directory(path, error) || !(text << in.rdbuf()))
+    throw FileError(path, "cannot be read");
+  return std::move(text).str();
+}
+
+std::string exact(double number) {
+  std::array<char, 32> digits{};
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), number);
+  return {digits.data(), end};
+}
+
+LineFile::LineFile(std::filesystem::path path) : path_(std::move(path)), out_(path_, std::ios::binary) {
+  if (!out_) throw FileError(path_, "cannot be written");
+}
+
+void LineFile::line(const std::string& text) {
+  out_ << text << '\n' << std::flush;
+  if (!out_) throw FileError(path_, "cannot be written any further; is the disk full?");
+}
+
+}  // namespace crossdem

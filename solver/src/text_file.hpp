@@ -1,0 +1,36 @@
+#pragma once
+// Text files that notice when they could not be written or read.
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+namespace crossdem {
+
+/// The system refused a file: which, and why.
+class FileError : public std::runtime_error {
+ public:
+  FileError(const std::filesystem::path& path, const std::string& what)
+      : std::runtime_error(path.string() + ": " + what) {}
+};
+
+/// The whole text of a file of at most `most_bytes`.
+std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes);
+
+/// A number with all the digits it takes to read the same double back.
+std::string exact(double number);
+
+/// A text file written line by line; each line is handed to the system at once, so that a full disk is an error and
+/// readers see progress.
+class LineFile {
+ public:
+  explicit LineFile(std::filesystem::path path);
+  void line(const std::string& text);
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream out_;
+};
+
+}  // namespace crossdem
