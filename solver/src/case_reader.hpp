@@ -125,12 +125,12 @@ class Reader {
     const auto* entry = find(key, true);
     if (entry == nullptr) return;
     enter(key, *entry, [&] {
-      for (const auto& [name, table] : entry->items()) {
-        find(name, true);
-        if (!is_identifier(name))
-          fault(name, "a name here must consist of 1 to 64 letters, digits and underscores");
+      for (const auto& item : entry->items()) {
+        find(item.key(), true);
+        if (!is_identifier(item.key()))
+          fault(item.key(), "a name here must consist of 1 to 64 letters, digits and underscores");
         else
-          enter(name, table, [&] { body(values[name]); });
+          enter(item.key(), item.value(), [&] { body(values[item.key()]); });
       }
     });
   }

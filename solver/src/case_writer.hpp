@@ -44,7 +44,7 @@ class Writer {
   template <class Value, class Body>
   void optional_map(const std::string& key, std::map<std::string, Value>& values, Body body) {
     group(key, [&] {
-      for (auto& [name, value] : values) group(name, [&] { body(value); });
+      for (auto& entry : values) group(entry.first, [&] { body(entry.second); });
     });
   }
 

@@ -1,6 +1,7 @@
 // crossdem-solver: resolve a case, make a packing, run. Exit 0 done, 1 the run went wrong, 2 bad input.
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <iostream>
 
 #include "crossdem/run.hpp"
@@ -36,62 +37,83 @@ void claim_folder(const std::filesystem::path& folder) {
     throw crossdem::FileError(folder, "is not an empty folder; nothing was written");
 }
 
-}  // namespace
+struct Arguments {
+  std::string case_file;
+  std::string shown_name;  // of the case, in messages
+  std::string packing_file;
+  std::string output;
+  std::uint64_t seed = 1;
+};
 
-int main(int argc, char** argv) {
+void resolve(const Arguments& given) {
+  std::cout << crossdem::canonical_json(load(given.case_file, given.shown_name)) << std::flush;
+  if (!std::cout) throw crossdem::FileError("standard output", "cannot be written");
+}
+
+void pack(const Arguments& given) {
+  const crossdem::Case setup = load(given.case_file, given.shown_name);
+  claim_folder(given.output);
+  crossdem::write_packing(crossdem::make_packing(setup, given.seed), given.output);
+}
+
+void run(const Arguments& given) {
+  const crossdem::Case setup = load(given.case_file, given.shown_name);
+  const crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
+  claim_folder(given.output);
+  crossdem::run(setup, packing, given.output);
+}
+
+int command_line(int argc, char** argv) {
   CLI::App app{"Native solver of crossdem: discs by the Distinct Element Method of Tanaka et al. (2000)"};
   app.set_version_flag("--version", crossdem::version_line());
   app.require_subcommand(1);
 
-  std::string case_file;
-  std::string shown_name;
-  std::string packing_file;
-  std::string output;
-  std::uint64_t seed = 1;
-  const auto add_case = [&](CLI::App* command) {
-    command->add_option("case", case_file, "case as JSON; - reads standard input")->required();
-    command->add_option("--file-name", shown_name, "name of the case in messages");
+  Arguments given;
+  void (*command)(const Arguments&) = nullptr;
+  const auto add_command = [&](const char* name, const char* help, void (*function)(const Arguments&)) {
+    CLI::App* added = app.add_subcommand(name, help);
+    added->callback([&command, function] { command = function; });
+    added->add_option("case", given.case_file, "case as JSON; - reads standard input")->required();
+    added->add_option("--file-name", given.shown_name, "name of the case in messages");
+    return added;
   };
-  CLI::App* resolve = app.add_subcommand("resolve", "print the complete case as canonical JSON");
-  add_case(resolve);
-  CLI::App* pack = app.add_subcommand("pack", "settle a bed and write packing.csv and packing.json");
-  add_case(pack);
-  pack->add_option("--seed", seed, "seed of the random lattice")
-      ->check(CLI::Range(std::uint64_t{0}, ~std::uint64_t{0}));
-  pack->add_option("--output", output, "folder to write into")->required();
-  CLI::App* run = app.add_subcommand("run", "run the case and write motion.h5, resistance.csv, ledger.csv, run.json");
-  add_case(run);
-  run->add_option("--packing", packing_file, "packing.csv, with packing.json beside it")->required();
-  run->add_option("--output", output, "folder to write into")->required();
+  add_command("resolve", "print the complete case as canonical JSON", resolve);
+  CLI::App* packer = add_command("pack", "settle a bed and write packing.csv and packing.json", pack);
+  packer->add_option("--seed", given.seed, "seed of the random lattice");
+  packer->add_option("--output", given.output, "folder to write into")->required();
+  CLI::App* runner = add_command("run", "write motion.h5, resistance.csv, ledger.csv and, at the end, run.json", run);
+  runner->add_option("--packing", given.packing_file, "packing.csv, with packing.json beside it")->required();
+  runner->add_option("--output", given.output, "folder to write into")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : exit_bad_input;
   }
+  if (given.shown_name.empty()) given.shown_name = given.case_file == "-" ? "standard input" : given.case_file;
 
-  if (shown_name.empty()) shown_name = case_file == "-" ? "standard input" : case_file;
   try {
-    const crossdem::Case setup = load(case_file, shown_name);
-    if (resolve->parsed()) {
-      std::cout << crossdem::canonical_json(setup) << std::flush;
-      if (!std::cout) throw crossdem::FileError("standard output", "cannot be written");
-    } else if (pack->parsed()) {
-      claim_folder(output);
-      crossdem::write_packing(crossdem::make_packing(setup, seed), output);
-    } else {
-      const crossdem::Packing packing = crossdem::read_packing(packing_file, setup);
-      claim_folder(output);
-      crossdem::run(setup, packing, output);
-    }
+    command(given);
     return 0;
   } catch (const crossdem::CaseError& error) {
-    for (const std::string& fault : error.faults()) std::cerr << shown_name << ": " << fault << "\n";
+    for (const std::string& fault : error.faults()) std::cerr << given.shown_name << ": " << fault << "\n";
     return exit_bad_input;
+  } catch (const crossdem::WriteError&) {
+    throw;
   } catch (const crossdem::FileError& error) {
     std::cerr << error.what() << "\n";
     return exit_bad_input;
-  } catch (const std::exception& error) {
-    std::cerr << shown_name << ": " << error.what() << "\n";
-    return exit_failed;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return command_line(argc, argv);
+  } catch (const std::exception& error) {
+    std::fputs((std::string("crossdem-solver: ") + error.what() + "\n").c_str(), stderr);
+  } catch (...) {
+    std::fputs("crossdem-solver: unknown fault\n", stderr);
+  }
+  return exit_failed;
 }

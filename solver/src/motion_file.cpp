@@ -8,12 +8,12 @@
 namespace crossdem {
 namespace {
 
-/// An HDF5 identifier that closes itself. A negative identifier is an error of the library, reported as FileError.
+/// An HDF5 identifier that closes itself. A negative identifier is an error of the library, reported as WriteError.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
   Handle(hid_t id, Close close, const std::filesystem::path& path) : id_(id), close_(close) {
-    if (id_ < 0) throw FileError(path, "HDF5 could not write it; is the disk full?");
+    if (id_ < 0) throw WriteError(path, "HDF5 could not write it; is the disk full?");
   }
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
@@ -35,7 +35,7 @@ struct MotionFile::File {
 
  private:
   void require(herr_t status) const {
-    if (status < 0) throw FileError(path, "HDF5 could not write it; is the disk full?");
+    if (status < 0) throw WriteError(path, "HDF5 could not write it; is the disk full?");
   }
 
   void group(const char* name) const {

@@ -11,7 +11,7 @@ namespace crossdem {
 struct ParticlePair {
   std::uint32_t i = 0;
   std::uint32_t j = 0;
-  auto operator<=>(const ParticlePair&) const = default;
+  auto operator<=>(const ParticlePair&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 misreads it
 };
 
 /// All pairs i < j whose surfaces are closer than `gap` [m], sorted by i, then j; found with a grid of cells, in a time

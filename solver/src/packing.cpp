@@ -49,8 +49,10 @@ Particles jittered_lattice(const Case& setup, std::uint64_t seed) {
 
   Particles particles;
   for (std::size_t i = 0; i < radii.size(); ++i) {
-    const Vector2 node(left + static_cast<double>(i % columns) * recipe.lattice_spacing,
-                       margin + static_cast<double>(i / columns) * recipe.lattice_spacing);
+    const std::size_t row = i / columns;
+    const std::size_t column = i % columns;
+    const Vector2 node(left + static_cast<double>(column) * recipe.lattice_spacing,
+                       margin + static_cast<double>(row) * recipe.lattice_spacing);
     const double dx = random.within(recipe.jitter);
     const double dy = random.within(recipe.jitter);
     const double vx = random.within(recipe.velocity);

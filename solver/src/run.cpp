@@ -37,15 +37,15 @@ void run(const Case& setup, const Packing& packing, const std::filesystem::path&
   long samples = 0;
   for (long step = 0;; step += between_outputs) {
     simulation.check();
-    // From the interval's count, not by adding steps: engines with other time steps must write the same times.
+    // Times come from the count of intervals, not of steps: engines with other time steps must write the same times.
     if (step % per_sample == 0) {
-      const double time = static_cast<double>(step / per_sample) * setup.time.sample_interval;
+      const double time = static_cast<double>(samples) * setup.time.sample_interval;
       resistance.row(time, setup.bar.speed * time, simulation);
       ledger.row(time, simulation);
       ++samples;
     }
     if (step % per_frame == 0) {
-      const double time = static_cast<double>(step / per_frame) * setup.time.frame_interval;
+      const double time = static_cast<double>(frames) * setup.time.frame_interval;
       motion.frame(step, time, simulation.bar_tip(), simulation.particles());
       ++frames;
     }

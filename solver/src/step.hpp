@@ -124,8 +124,8 @@ class Step {
   /// Eqs. (10)-(12): the load of one contact on particle i, whose partner lies in direction `normal`. Returns the
   /// force.
   Vector2 add(std::uint32_t i, const ContactForce& force, const Vector2& normal) {
-    const Vector2 received(-force.normal * normal.x() + force.shear * normal.y(),
-                           -force.normal * normal.y() - force.shear * normal.x());
+    Vector2 received(-force.normal * normal.x() + force.shear * normal.y(),
+                     -force.normal * normal.y() - force.shear * normal.x());
     w_.loads[i].force += received;
     w_.loads[i].moment -= p_.radius[i] * force.shear;
     return received;

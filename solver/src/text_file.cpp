@@ -29,7 +29,7 @@ LineFile::LineFile(std::filesystem::path path) : path_(std::move(path)), out_(pa
 
 void LineFile::line(const std::string& text) {
   out_ << text << '\n' << std::flush;
-  if (!out_) throw FileError(path_, "cannot be written any further; is the disk full?");
+  if (!out_) throw WriteError(path_, "cannot be written any further; is the disk full?");
 }
 
 }  // namespace crossdem

@@ -15,6 +15,12 @@ class FileError : public std::runtime_error {
       : std::runtime_error(path.string() + ": " + what) {}
 };
 
+/// A file that was begun could not be finished.
+class WriteError : public FileError {
+ public:
+  using FileError::FileError;
+};
+
 /// The whole text of a file of at most `most_bytes`.
 std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes);
 

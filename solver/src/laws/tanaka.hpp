@@ -54,7 +54,7 @@ struct TanakaLaw {
 
  private:
   /// Eqs. (3), (4): at first contact only the share of the step spent in contact counts.
-  RelativeDisplacement share_in_contact(RelativeDisplacement u) const {
+  [[nodiscard]] RelativeDisplacement share_in_contact(RelativeDisplacement u) const {
     double share = 0.0;
     if (readings.first_contact_shear == FirstContactShear::clamped_share) {
       share = u.normal > 0.0 ? std::min(u.overlap / u.normal, 1.0) : 0.0;
