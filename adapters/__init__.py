@@ -1,0 +1,1 @@
+"""The engines behind one door: files in, a process, a Dataset out."""

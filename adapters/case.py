@@ -1,0 +1,100 @@
+"""The Python front of a case: TOML text in, the solver's resolved case out. It knows no key of the schema."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .overrides import OverrideError, apply_override
+from .solver import call_solver, messages
+from .toml_text import TextError, read_toml
+
+
+class CaseError(Exception):
+    """A case that cannot be used; `faults` holds one printable line per fault."""
+
+    def __init__(self, faults: Sequence[str]):
+        super().__init__("\n".join(faults))
+        self.faults = list(faults)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A validated case: every default filled in, SI units."""
+
+    resolved: dict
+    canonical: bytes  # the solver's JSON: keys sorted, no white space
+    warnings: tuple[str, ...] = field(default=(), compare=False)  # printable lines
+
+    @property
+    def hash(self) -> str:
+        """SHA-256 [hex] of the canonical JSON: the case's identity."""
+        return hashlib.sha256(self.canonical).hexdigest()
+
+    @property
+    def name(self) -> str:
+        return self.resolved["name"]
+
+    def step_s(self, engine_name: str) -> float:
+        """The engine's time step [s]: its own where the case gives one, else that of the case."""
+        engine = self.resolved.get("engines", {}).get(engine_name, {})
+        return engine.get("step_s", self.resolved["time"]["step_s"])
+
+    @classmethod
+    def from_canonical(cls, canonical: bytes) -> "Case":
+        return cls(json.loads(canonical), canonical)
+
+    @classmethod
+    def from_resolved(cls, resolved: dict) -> "Case":
+        """From a resolved case at hand as a dict, such as a dataset's."""
+        text = json.dumps(resolved, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+        return cls(resolved, text.encode())
+
+
+def load_case(path: Path | str, overrides: Sequence[str] = ()) -> Case:
+    """Reads a case file, applies `key.path=value` overrides and has the solver validate the whole.
+
+    Raises CaseError with every fault there is to tell, SolverError where there is no solver to ask.
+    """
+    try:
+        raw = read_toml(Path(path))
+    except TextError as error:
+        raise CaseError([str(error)]) from error
+    faults = []
+    for override in overrides:
+        try:
+            apply_override(raw, override)
+        except OverrideError as error:
+            faults.append(f"--set {override}: {error}")
+    if faults:
+        raise CaseError(faults)
+    return _resolve(raw, str(path))
+
+
+def _resolve(raw: dict, file_name: str) -> Case:
+    try:
+        text = json.dumps(_to_json(raw), ensure_ascii=False).encode()
+    except RecursionError as error:
+        raise CaseError([f"{file_name}: nested too deeply"]) from error
+    done = call_solver(["resolve", "-", f"--file-name={file_name}"], stdin=text)
+    said = messages(done.stderr)
+    if done.returncode:
+        raise CaseError(said or [f"{file_name}: refused by crossdem-solver without a word"])
+    canonical = done.stdout.rstrip(b"\n")
+    return Case(json.loads(canonical), canonical, tuple(said))
+
+
+def _to_json(value):
+    """TOML's values as JSON's. What JSON lacks becomes a string, which the solver refuses by its key path."""
+    if isinstance(value, dict):
+        return {key: _to_json(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_to_json(entry) for entry in value]
+    if isinstance(value, (bool, str)):
+        return value
+    if isinstance(value, int):
+        return value if abs(value) < 2**63 else "an integer beyond 64 bits"
+    if isinstance(value, float):
+        return value if abs(value) < float("inf") else str(value)
+    return value.isoformat()  # TOML's dates and times

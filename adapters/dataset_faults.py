@@ -1,0 +1,183 @@
+"""What makes a run's data unfit to be a Dataset: every fault found, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+
+from .motion_file import Motion
+
+SCHEMA_VERSION = 1
+
+RESISTANCE_COLUMNS = (
+    "time_s",  # 0 when the bar starts
+    "depth_m",  # travel of the bar since then
+    "force_x_N",  # of the particles on the bar, at that step
+    "force_y_N",  # as above; > 0 is upwards, the penetration resistance
+    "tip_force_y_N",  # share of force_y_N on the bottom face and its corners
+    "shaft_force_y_N",  # share on the sides
+    "contacts",  # pairs of particles that overlap, without walls and bar
+    "kinetic_energy_J",  # of all particles, rotation (I = m r^2 / 2) included
+)
+
+MANIFEST_KEYS = (
+    "schema_version",
+    "case_name",
+    "case_hash",
+    "packing_hash",
+    "seed",
+    "engine",
+    "engine_version",
+    "compiler",
+    "time_step_s",
+    "command",
+    "started_utc",
+    "wall_s",
+    "cpu_s",
+    "particles",
+    "frames",
+    "samples",
+    "limitations",
+    "gates",
+    "run_key",
+)
+
+TIME_TOLERANCE_S = 1e-9  # far below any time step, far above round-off
+LENGTH_TOLERANCE_M = 1e-9
+FORCE_TOLERANCE_N = 1e-9  # for the sum of tip and shaft
+
+
+def sample_times_s(case: dict) -> np.ndarray:
+    """The times [s] of the rows of resistance that `case` asks for."""
+    return _times_s(case, "sample_interval_s")
+
+
+def frame_times_s(case: dict) -> np.ndarray:
+    """The times [s] of the frames of motion that `case` asks for."""
+    return _times_s(case, "frame_interval_s")
+
+
+def faults(
+    case: dict, manifest: dict, radius_m: np.ndarray, motion: Motion, resistance: pd.DataFrame
+) -> list[str]:
+    """Why these are not one whole, sane run of `case`; a later kind of fault only once the earlier are clean."""
+    for find in (_manifest_faults, _shape_faults, _finite_faults, _value_faults):
+        found = list(find(case, manifest, np.asarray(radius_m), motion, resistance))
+        if found:
+            return found
+    return []
+
+
+def _times_s(case: dict, interval_key: str) -> np.ndarray:
+    interval_s = case["time"][interval_key]
+    return np.arange(round(case["time"]["penetration_s"] / interval_s) + 1) * interval_s
+
+
+def _manifest_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]:
+    missing = [key for key in MANIFEST_KEYS if key not in manifest]
+    if missing:
+        yield f"the manifest lacks {', '.join(missing)}"
+    elif manifest["schema_version"] != SCHEMA_VERSION:
+        yield f"the manifest is of schema version {manifest['schema_version']!r}; this crossdem reads {SCHEMA_VERSION}"
+
+
+def _shape_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]:
+    if tuple(resistance.columns) != RESISTANCE_COLUMNS:
+        found = ", ".join(map(str, resistance.columns))
+        yield f"the resistance has the columns {found}; expected {', '.join(RESISTANCE_COLUMNS)}"
+    else:
+        text = [
+            name
+            for name in RESISTANCE_COLUMNS
+            if not pd.api.types.is_numeric_dtype(resistance[name])
+        ]
+        if text:
+            yield f"the resistance has columns that are not numbers: {', '.join(text)}"
+
+    particles = case["particles"]["count"]
+    frames = len(frame_times_s(case))
+    samples = len(sample_times_s(case))
+    if len(resistance) != samples:
+        yield f"{len(resistance)} of {samples} samples"
+    if len(motion.time_s) != frames:
+        yield f"{len(motion.time_s)} of {frames} frames"
+    if radius_m.shape != (particles,):
+        yield f"{len(radius_m)} of {particles} particles"
+    shapes = {
+        "time_s": (frames,),
+        "position_m": (frames, particles, 2),
+        "velocity_m_s": (frames, particles, 2),
+        "angular_velocity_rad_s": (frames, particles),
+        "angle_rad": (frames, particles),
+        "bar_tip_m": (frames,),
+    }
+    for name, shape in shapes.items():
+        values = getattr(motion, name)
+        if values is not None and np.shape(values) != shape:
+            yield f"the motion's {name} has the shape {np.shape(values)}; expected {shape}"
+    counted = {"particles": particles, "frames": frames, "samples": samples}
+    for key, expected in counted.items():
+        if manifest[key] != expected:
+            yield f"the manifest says {manifest[key]!r} {key}; the case {expected}"
+
+
+def _finite_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]:
+    for name in RESISTANCE_COLUMNS:
+        if not np.isfinite(resistance[name]).all():
+            yield f"the resistance's {name} is not finite everywhere"
+    for name, values in vars(motion).items():
+        if values is not None and not np.isfinite(values).all():
+            yield f"the motion's {name} is not finite everywhere"
+    if not (np.isfinite(radius_m).all() and (radius_m > 0).all()):
+        yield "a radius is not a positive number"
+
+
+def _value_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]:
+    speed_m_s = case["bar"]["speed_m_s"]
+    if not np.allclose(resistance["time_s"], sample_times_s(case), rtol=0, atol=TIME_TOLERANCE_S):
+        yield "the samples are not at the times that the case asks for"
+    if not np.allclose(motion.time_s, frame_times_s(case), rtol=0, atol=TIME_TOLERANCE_S):
+        yield "the frames are not at the times that the case asks for"
+    if not np.allclose(
+        resistance["depth_m"], speed_m_s * resistance["time_s"], rtol=0, atol=LENGTH_TOLERANCE_M
+    ):
+        yield "depth_m is not the bar's speed times time_s"
+    if not np.allclose(
+        motion.bar_tip_m,
+        motion.bar_tip_m[0] - speed_m_s * motion.time_s,
+        rtol=0,
+        atol=LENGTH_TOLERANCE_M,
+    ):
+        yield "bar_tip_m does not move with the bar's speed"
+
+    parts_N = resistance["tip_force_y_N"] + resistance["shaft_force_y_N"]
+    gap_N = float(np.max(np.abs(parts_N - resistance["force_y_N"])))
+    if gap_N > FORCE_TOLERANCE_N:
+        yield f"tip and shaft do not sum up to force_y_N (by up to {gap_N:.3g} N)"
+    contacts = resistance["contacts"]
+    if (contacts < 0).any() or (contacts != np.rint(contacts)).any():
+        yield "contacts is not a count"
+    if (resistance["kinetic_energy_J"] < 0).any():
+        yield "a kinetic energy is negative"
+    yield from _lost_particles(case, motion)
+
+
+def _lost_particles(case, motion: Motion) -> Iterator[str]:
+    """A particle with its centre beyond a face of wall or bar has gone through: no contact brings it back."""
+    x_m, y_m = motion.position_m[..., 0], motion.position_m[..., 1]
+    outside = (x_m < 0) | (x_m > case["container"]["width_m"]) | (y_m < 0)
+    bar = case["bar"]
+    tip_m = motion.bar_tip_m[:, np.newaxis]
+    in_bar = (
+        (np.abs(x_m - bar["centre_x_m"]) < bar["width_m"] / 2)
+        & (y_m > tip_m)
+        & (y_m < tip_m + bar["length_m"])
+    )
+    for what, where in (("outside the container", outside), ("inside the bar", in_bar)):
+        if where.any():
+            lost = np.flatnonzero(where.any(axis=0))
+            first_s = motion.time_s[np.flatnonzero(where.any(axis=1))[0]]
+            first_ids = ", ".join(map(str, lost[:5]))
+            yield f"lost {len(lost)} particles, found {what} from {first_s:.6g} s on (first ids {first_ids})"

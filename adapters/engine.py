@@ -1,0 +1,99 @@
+"""The contract of an engine: four small methods around data files. An engine starts no run; run.py does."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from abc import ABC, abstractmethod
+from pathlib import Path
+
+from .case import Case
+from .dataset import Dataset
+from .packing import Packing
+from .schedule import Schedule
+
+OUTPUT = "output"  # folder, in a run's folder, that the engine writes into
+INPUTS = "inputs"  # folder, in a run's folder, of all that the engine reads
+
+
+class EngineNotFound(Exception):
+    """An engine that is not installed; the text says what to install."""
+
+
+class EngineFailure(Exception):
+    """A run that did not end as it should; the text says what happened."""
+
+
+class Engine(ABC):
+    """One discrete element code. Paths that it names are relative to the run's folder, in which it is started."""
+
+    name: str
+    script: Path | None = (
+        None  # real file that the engine runs; a copy goes into every run's inputs/
+    )
+    program: str  # the word of `command` that `executable` stands for, as people would type it
+    samples_file: str  # grows by one line per sample: shows the progress
+    kept_output: tuple[str, ...] = ()  # files of output/ worth keeping beside the dataset
+    cost_s: float  # measured CPU time per particle and step, to order runs and to notice a hang
+
+    @abstractmethod
+    def version(self) -> str:
+        """As the engine itself reports it. Raises EngineNotFound."""
+
+    @abstractmethod
+    def executable(self) -> str:
+        """Where `program` is. Raises EngineNotFound."""
+
+    @abstractmethod
+    def write_input(self, case: Case, packing: Packing, run_dir: Path) -> None:
+        """Write the engine's data files and a copy of its script into `run_dir`/inputs."""
+
+    @abstractmethod
+    def command(self, case: Case, run_dir: Path) -> list[str]:
+        """The command, to be started in `run_dir`; relative paths only."""
+
+    @abstractmethod
+    def lines_before_bar(self, case: Case) -> int:
+        """Lines of `samples_file` before that of the start of the bar."""
+
+    @abstractmethod
+    def read_output(self, case: Case, packing: Packing, run_dir: Path, manifest: dict) -> Dataset:
+        """What the engine left in `run_dir`/output. Raises EngineFailure where it is not whole."""
+
+    def unsupported(self, case: Case) -> list[str]:
+        """Why the engine cannot run `case` faithfully at all; empty if it can."""
+        return []
+
+    def limitations(self, case: Case) -> list[str]:
+        """What of `case` the engine expresses otherwise than the case says; for the report."""
+        return []
+
+    def environment(self) -> dict[str, str]:
+        """Variables set for the process; one thread, so that runs repeat bit by bit and share the cores."""
+        return {"OMP_NUM_THREADS": "1"}
+
+    def compiler(self) -> str | None:
+        """Compiler and flags, where the engine is built here."""
+        return None
+
+    def complaint(self, log: str) -> str | None:
+        """The reason for a failure in the engine's own words, if its log gives one."""
+        return None
+
+    def digest(self) -> str:
+        """SHA-256 [hex] of what the run's result depends on beside case, packing and version: the script."""
+        return hashlib.sha256(self.script.read_bytes() if self.script else b"").hexdigest()
+
+    def schedule(self, case: Case) -> Schedule:
+        return Schedule.of(case.resolved, case.step_s(self.name))
+
+    def expected_s(self, case: Case) -> float:
+        """Rough CPU time of a run [s]."""
+        return 2.0 + self.cost_s * case.resolved["particles"]["count"] * self.schedule(case).steps
+
+    def lines_in_all(self, case: Case) -> int:
+        """Lines of `samples_file` when the run is over."""
+        return self.lines_before_bar(case) + self.schedule(case).samples
+
+    def _copy_script(self, run_dir: Path) -> None:
+        shutil.copyfile(self.script, run_dir / INPUTS / self.script.name)

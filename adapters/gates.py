@@ -1,0 +1,43 @@
+"""The gates: what a run must pass before it may be compared. A gate that fails is a result, not an error."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from .dataset import Dataset
+
+
+def with_gates(dataset: Dataset, native_contacts: int | None) -> Dataset:
+    """The same run with its gates in the manifest.
+
+    `native_contacts` are those of the native run on the same packing at the end of its rest. Without one (None)
+    there is no such gate: the packing's own contacts, from before it was loaded without shear springs, are fewer.
+    """
+    limits = dataset.case["gates"]
+    at_rest = dataset.resistance.iloc[0]
+    gates = [_rest(float(at_rest["kinetic_energy_J"]), limits["rest_kinetic_energy_J"])]
+    if native_contacts is not None:
+        contacts = int(at_rest["contacts"])
+        gates.append(_contacts(contacts, native_contacts, limits["contacts_share"]))
+    # A dataset with a particle lost cannot be constructed; the gate says that it was looked at.
+    gates.append(_gate("no_particle_lost", 0, 0, True, "every particle stayed in the container"))
+    return replace(dataset, manifest=dataset.manifest | {"gates": gates})
+
+
+def _rest(energy_J: float, limit_J: float) -> dict:
+    passed = energy_J < limit_J
+    said = "the bed rests" if passed else "not comparable: the bed does not rest at this time step"
+    numbers = f"kinetic energy {energy_J:.3g} J at the end of the rest, allowed {limit_J:.3g} J"
+    return _gate("rest_kinetic_energy_J", energy_J, limit_J, passed, f"{said} ({numbers})")
+
+
+def _contacts(contacts: int, native_contacts: int, limit: float) -> dict:
+    difference = abs(contacts - native_contacts) / max(1, native_contacts)
+    passed = difference <= limit
+    said = "the bed is the same" if passed else "not comparable: the rested bed is another one"
+    numbers = f"{contacts} contacts, {native_contacts} in the native run; allowed to differ by {100 * limit:.3g} %"
+    return _gate("contacts_share", difference, limit, passed, f"{said} ({numbers})")
+
+
+def _gate(name: str, value: float, limit: float, passed: bool, message: str) -> dict:
+    return {"name": name, "value": value, "limit": limit, "passed": passed, "message": message}

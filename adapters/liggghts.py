@@ -1,0 +1,197 @@
+"""LIGGGHTS-PUBLIC: data files for the deck liggghts_case.in, and its output as a Dataset."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from functools import lru_cache
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from .case import Case
+from .dataset import Dataset, Motion
+from .engine import INPUTS, OUTPUT, Engine, EngineFailure, EngineNotFound
+from .liggghts_input import bar, numbering, numbers, particles
+from .packing import Packing
+from .sample_table import SAMPLE_COLUMNS, frame_times, resistance_table, whole_lines
+from .schedule import Schedule
+
+SAMPLES = f"{OUTPUT}/samples.txt"
+FRAMES = f"{OUTPUT}/frames.txt"
+FRAME_COLUMNS = ("id", "x_m", "y_m", "vx_m_s", "vy_m_s", "omega_rad_s")
+FRAME_HEADER_LINES = 9
+FORCE_TOLERANCE_N = 1e-9
+# Open MPI would start a daemon beside even a single process, and that opens TCP ports on every interface.
+NO_MPI_DAEMON = {
+    "OMPI_MCA_ess_singleton_isolated": "1",
+    "OMPI_MCA_btl": "self",
+    "OMPI_MCA_pml": "ob1",
+}
+ERROR_LINE = re.compile(r"^ERROR[^:]*: (.+?)(?: \([\w./]+:\d+\))?$", re.MULTILINE)
+
+
+class Liggghts(Engine):
+    name = "liggghts"
+    program = "liggghts"
+    script = Path(__file__).with_name("liggghts_case.in")
+    samples_file = SAMPLES
+    cost_s = 1.2e-7
+
+    def executable(self) -> str:
+        found = shutil.which("liggghts")
+        if not found:
+            raise EngineNotFound("liggghts is not installed: apt install liggghts")
+        return found
+
+    def version(self) -> str:
+        return _version(self.executable())
+
+    def environment(self) -> dict[str, str]:
+        return super().environment() | NO_MPI_DAEMON
+
+    def unsupported(self, case: Case) -> list[str]:
+        found = []
+        if case.resolved["time"]["rest_s"] == 0:
+            found.append(
+                "without a rest (time.rest_s = 0) it takes no sample at the start of the bar"
+            )
+        if case.resolved["scheme"]["bar_corner"] == "faces_only":
+            found.append(
+                "its bar always has corners; scheme.bar_corner = faces_only cannot be expressed"
+            )
+        return found
+
+    def limitations(self, case: Case) -> list[str]:
+        scheme = case.resolved["scheme"]
+        found = [
+            "integrates by velocity Verlet, not by the averaged displacement of Eqs (19)-(24)",
+            "caps the shear spring by the absolute total normal force, not by the normal spring force of Eq (9)",
+            "takes torque arms and slip velocity at r - overlap / 2, not at the full radius of Eqs (2) and (12)",
+            "counts a first contact's shear displacement in full, without the share of Eq (4)",
+            "rotates its shear spring with the contact by projection",
+            "near a corner of the bar, a disc on its side may feel side and corner at once",
+            "keeps no angles of the particles",
+        ]
+        if scheme["normal_spring"] == "incremental":
+            found.append(
+                "takes the normal spring from the overlap, not by the increments of Eq (5)"
+            )
+        return found
+
+    def command(self, case: Case, run_dir: Path) -> list[str]:
+        # Unbuffered, because some of its errors end the process without flushing what they said.
+        deck = f"{INPUTS}/{self.script.name}"
+        return ["stdbuf", "-o0", self.program, "-log", "none", "-in", deck]
+
+    def complaint(self, log: str) -> str | None:
+        found = ERROR_LINE.findall(log)
+        return found[-1] if found else None
+
+    def lines_before_bar(self, case: Case) -> int:
+        schedule = self.schedule(case)
+        first_step, start_step = numbering(schedule)
+        # A title, and the samples of the rest less its last, which is that of the bar's start.
+        return start_step // schedule.sample - first_step // schedule.sample
+
+    def write_input(self, case: Case, packing: Packing, run_dir: Path) -> None:
+        inputs = run_dir / INPUTS
+        self._copy_script(run_dir)
+        (inputs / "numbers.in").write_text(
+            numbers(case.resolved, self.schedule(case), packing), encoding="ascii"
+        )
+        (inputs / "particles.data").write_text(particles(case.resolved, packing), encoding="ascii")
+        (inputs / "bar.stl").write_text(bar(case.resolved, packing), encoding="ascii")
+
+    def read_output(self, case: Case, packing: Packing, run_dir: Path, manifest: dict) -> Dataset:
+        schedule = self.schedule(case)
+        radius_m = packing.particles["radius_m"].to_numpy(dtype=float)
+        resistance = _read_samples(run_dir / SAMPLES, case.resolved, schedule)
+        motion = _read_frames(run_dir / FRAMES, case.resolved, schedule, packing)
+        return Dataset(case.resolved, manifest, radius_m, motion, resistance)
+
+
+@lru_cache
+def _version(executable: str) -> str:
+    asked = subprocess.run(
+        [executable, "-log", "none", "-h"],
+        env=os.environ | NO_MPI_DAEMON,
+        capture_output=True,
+        timeout=60,
+    )
+    said = asked.stdout.decode(errors="replace")
+    found = re.search(r"Version ([^,)]+)", said)
+    if not found:
+        raise EngineNotFound(
+            f"{executable} does not say its version; is it LIGGGHTS? (apt install liggghts)"
+        )
+    return found[1]
+
+
+def _read_samples(path: Path, case: dict, schedule: Schedule) -> pd.DataFrame:
+    """The table of resistance from the samples at and after the start of the bar."""
+    try:
+        table = pd.read_csv(
+            StringIO(whole_lines(path)),
+            sep=r"\s+",
+            comment="#",
+            header=None,
+            names=SAMPLE_COLUMNS,
+            float_precision="round_trip",
+        ).astype(float)
+    except (OSError, ValueError) as error:
+        raise EngineFailure(f"liggghts left no readable {path.name} ({error})") from error
+    table["step"] -= numbering(schedule)[1]
+    table = resistance_table(table, case, schedule, "liggghts")
+    # f_bar sums over the bar's contacts, the other two over the discs: they must be the same force.
+    gap_N = (table["tip_force_y_N"] + table["shaft_force_y_N"] - table["force_y_N"]).abs().max()
+    if gap_N > FORCE_TOLERANCE_N:
+        raise EngineFailure(f"liggghts: tip and shaft miss the bar's force by {gap_N:.3g} N")
+    return table
+
+
+def _read_frames(path: Path, case: dict, schedule: Schedule, packing: Packing) -> Motion:
+    """The motion from a text dump whose frames all have the same particles, sorted by id."""
+    count = len(packing.particles)
+    try:
+        text = whole_lines(path).splitlines()
+    except OSError as error:
+        raise EngineFailure(f"liggghts left no readable {path.name} ({error.strerror})") from error
+    block = FRAME_HEADER_LINES + count
+    _, start_step = numbering(schedule)
+    frames, steps = [], []
+    for first in range(0, len(text), block):
+        lines = text[first : first + block]
+        try:
+            if int(lines[3]) != count:
+                raise EngineFailure(
+                    f"liggghts lost {count - int(lines[3])} particles by step {lines[1]}"
+                )
+            frame = np.array([line.split() for line in lines[FRAME_HEADER_LINES:]], dtype=float)
+            whole = frame.shape == (count, len(FRAME_COLUMNS))
+        except (ValueError, IndexError):
+            whole = False
+        if not whole:
+            break
+        steps.append(int(lines[1]))
+        frames.append(frame)
+    time_s = frame_times(np.array(steps, dtype=int) - start_step, case, schedule, "liggghts")
+    values = np.stack(frames)
+    if not np.isfinite(values).all():
+        raise EngineFailure("liggghts wrote positions or velocities that are not finite")
+    if not (values[:, :, 0] == np.arange(1, count + 1)).all():
+        raise EngineFailure(
+            "liggghts lost particles: the ids in its frames are not those of the packing"
+        )
+    return Motion(
+        time_s=time_s,
+        position_m=values[:, :, 1:3],
+        velocity_m_s=values[:, :, 3:5],
+        angular_velocity_rad_s=values[:, :, 5],
+        angle_rad=None,
+        bar_tip_m=packing.bar_tip_m - case["bar"]["speed_m_s"] * time_s,
+    )

@@ -1,0 +1,110 @@
+"""What the deck liggghts_case.in reads: numbers, discs and bar; never a word of the case."""
+
+from __future__ import annotations
+
+import math
+
+from .packing import Packing
+from .schedule import Schedule
+
+
+def number(value: float | int | str) -> str:
+    """The only text that may reach a deck: a finite number with all its digits, or one of the words on and off."""
+    if value in ("on", "off"):
+        return value
+    if not math.isfinite(value):
+        raise ValueError(f"{value!r} is not a finite number")
+    return str(value) if isinstance(value, int) else format(float(value), ".17g")
+
+
+def numbering(schedule: Schedule) -> tuple[int, int]:
+    """The numbers of the first step and of the one at which the bar starts.
+
+    The latter is a multiple of both intervals, as LIGGGHTS writes samples and frames at multiples.
+    """
+    common = math.lcm(schedule.sample, schedule.frame)
+    start_step = -(-schedule.rest // common) * common
+    return start_step - schedule.rest, start_step
+
+
+def numbers(case: dict, schedule: Schedule, packing: Packing) -> str:
+    """The numbers of the case as variables of the deck; SI units, names as the deck uses them."""
+    first_step, start_step = numbering(schedule)
+    found: dict[str, float | int | str] = {
+        "step_s": schedule.step_s,
+        "rest_steps": schedule.rest,
+        "penetration_steps": schedule.penetration,
+        "sample_steps": schedule.sample,
+        "frame_steps": schedule.frame,
+        "first_step": first_step,
+        "start_step": start_step,
+        "gravity": case["gravity_m_s2"],
+        "width_m": case["container"]["width_m"],
+        "skin_m": 0.5 * float(packing.particles["radius_m"].min()),
+        "speed": case["bar"]["speed_m_s"],
+        "bar_tip_m": packing.bar_tip_m,
+        "limit_force": "on" if case["scheme"]["attraction"] == "clipped" else "off",
+    }
+    for suffix, pair in (("particle", "particle_particle"), ("wall", "particle_wall")):
+        contact = case["contact"][pair]
+        found[f"kn_{suffix}"] = contact["normal_stiffness_N_m"]
+        found[f"kt_{suffix}"] = contact["shear_stiffness_N_m"]
+        found[f"gamman_{suffix}"] = contact["normal_damping_N_s_m"]
+        found[f"gammat_{suffix}"] = contact["shear_damping_N_s_m"]
+        found[f"friction_{suffix}"] = contact["friction"]
+    return "".join(f"variable {name} string {number(value)}\n" for name, value in found.items())
+
+
+def particles(case: dict, packing: Packing) -> str:
+    """The discs as LIGGGHTS data, in a domain that holds container and bar with room above."""
+    width_m, height_m = case["container"]["width_m"], case["container"]["height_m"]
+    top_m = packing.bar_tip_m + case["bar"]["length_m"] + height_m
+    margin_m = 0.1 * width_m
+    density_kg_m2 = case["particles"]["density_kg_m3"] * case["container"]["thickness_m"]
+    head = [
+        "discs of the packing",
+        "",
+        f"{len(packing.particles)} atoms",
+        "2 atom types",
+        f"{number(-margin_m)} {number(width_m + margin_m)} xlo xhi",
+        f"{number(-margin_m)} {number(top_m)} ylo yhi",
+        f"{number(-_half_depth_m(packing))} {number(_half_depth_m(packing))} zlo zhi",
+        "",
+        "Atoms",
+        "",
+    ]
+    rows = packing.particles.itertuples()
+    density = number(density_kg_m2)
+    atoms = [
+        f"{row.id + 1} 1 {number(2 * row.radius_m)} {density} {number(row.x_m)} {number(row.y_m)} 0"
+        for row in rows
+    ]
+    velocities = [f"{i + 1} 0 0 0 0 0 0" for i in range(len(packing.particles))]
+    return "\n".join([*head, *atoms, "", "Velocities", "", *velocities, ""])
+
+
+def _half_depth_m(packing: Packing) -> float:
+    """Half the domain in z: a domain shallower than 0.05 m aborts once there is a mesh."""
+    return max(0.5, 100 * float(packing.particles["radius_m"].max()))
+
+
+def bar(case: dict, packing: Packing) -> str:
+    """The bar's faces as STL. An edge belongs to its later triangle: the bottom comes last and owns the corners."""
+    shape = case["bar"]
+    left_m = shape["centre_x_m"] - shape["width_m"] / 2
+    right_m = shape["centre_x_m"] + shape["width_m"] / 2
+    bottom_m, top_m = packing.bar_tip_m, packing.bar_tip_m + shape["length_m"]
+    half_m = 1.6 * float(packing.particles["radius_m"].max())  # in z: edges out of the discs' reach
+    faces = (
+        ((-1, 0), (left_m, bottom_m), (left_m, top_m)),
+        ((1, 0), (right_m, top_m), (right_m, bottom_m)),
+        ((0, -1), (right_m, bottom_m), (left_m, bottom_m)),
+    )
+    lines = ["solid bar"]
+    for normal, start, end in faces:
+        corners = [(*start, -half_m), (*end, -half_m), (*end, half_m), (*start, half_m)]
+        for triangle in (corners[:3], [corners[0], *corners[2:]]):
+            lines += [f"facet normal {normal[0]} {normal[1]} 0", "outer loop"]
+            lines += ["vertex " + " ".join(map(number, corner)) for corner in triangle]
+            lines += ["endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid bar", ""])

@@ -1,0 +1,99 @@
+"""How the particles moved, and its file: H5MD 1.1 (https://nongnu.org/h5md), which readers of the field know."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+
+class MotionFileError(Exception):
+    """A motion file that cannot be read, or that is not in the layout written here."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """F frames of N particles, in the order of their ids; t = 0 is when the bar starts."""
+
+    time_s: np.ndarray  # (F,)
+    position_m: np.ndarray  # (F, N, 2) centres
+    velocity_m_s: np.ndarray  # (F, N, 2)
+    angular_velocity_rad_s: np.ndarray  # (F, N), counter-clockwise > 0
+    angle_rad: np.ndarray | None  # (F, N), counter-clockwise > 0, 0 at the packing; None: the engine keeps no angle
+    bar_tip_m: np.ndarray  # (F,) height of the bar's bottom face
+
+
+def write_motion(
+    path: Path,
+    motion: Motion,
+    radius_m: np.ndarray,
+    engine: str,
+    version: str,
+    *,
+    box_m: tuple[float, float],
+    time_step_s: float,
+) -> None:
+    """Write `motion` of particles with radii (N,) in a container of `box_m` (width, height); doubles, uncompressed."""
+    with h5py.File(path, "w") as file:
+        header = file.create_group("h5md")
+        header.attrs["version"] = np.array([1, 1])
+        header.create_group("author").attrs["name"] = "crossdem"
+        creator = header.create_group("creator")
+        creator.attrs["name"] = engine
+        creator.attrs["version"] = version
+
+        soil = file.create_group("particles/soil")
+        box = soil.create_group("box")
+        box.attrs["dimension"] = 2
+        box.attrs["boundary"] = ["none", "none"]
+        _write(box, "edges", np.asarray(box_m, dtype=float), "m")
+        _write(soil, "radius", np.asarray(radius_m, dtype=float), "m")
+        soil["id"] = np.arange(len(radius_m))
+
+        position = soil.create_group("position")
+        _write(position, "value", motion.position_m, "m")
+        position["step"] = np.rint(motion.time_s / time_step_s).astype(np.int64)
+        _write(position, "time", motion.time_s, "s")
+        _write_element(soil, "velocity", motion.velocity_m_s, "m s-1", position)
+        _write_element(soil, "angular_velocity", motion.angular_velocity_rad_s, "rad s-1", position)
+        if motion.angle_rad is not None:
+            _write_element(soil, "angle", motion.angle_rad, "rad", position)
+        _write_element(file.create_group("observables/bar"), "tip", motion.bar_tip_m, "m", position)
+
+
+def read_motion(path: Path) -> tuple[Motion, np.ndarray]:
+    """The motion in `path` and the radii (N,) of its particles. Raises MotionFileError."""
+    try:
+        with h5py.File(path, "r") as file:
+            soil = file["particles/soil"]
+            ids = soil["id"][()]
+            if not np.array_equal(ids, np.arange(len(ids))):
+                raise MotionFileError(f"{path}: the particles are not in the order of their ids")
+            motion = Motion(
+                time_s=soil["position/time"][()],
+                position_m=soil["position/value"][()],
+                velocity_m_s=soil["velocity/value"][()],
+                angular_velocity_rad_s=soil["angular_velocity/value"][()],
+                angle_rad=soil["angle/value"][()] if "angle" in soil else None,
+                bar_tip_m=file["observables/bar/tip/value"][()],
+            )
+            return motion, soil["radius"][()]
+    except (OSError, KeyError, TypeError) as error:
+        raise MotionFileError(f"{path}: not a motion file of crossdem ({error})") from error
+
+
+def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
+    group[name] = np.asarray(values, dtype=float)
+    group[name].attrs["unit"] = unit
+
+
+def _write_element(
+    parent: h5py.Group, name: str, values: np.ndarray, unit: str, clock: h5py.Group
+) -> None:
+    """An H5MD element that shares (hard link) the step and time of `clock`."""
+    element = parent.create_group(name)
+    _write(element, "value", values, unit)
+    element["step"] = clock["step"]
+    element["time"] = clock["time"]

@@ -1,0 +1,168 @@
+"""One run on its way: a folder that is being worked in, a process, and in the end a dataset or the reason why not."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+
+from .dataset import Dataset, DatasetError
+from .dataset_faults import SCHEMA_VERSION
+from .engine import OUTPUT, Engine, EngineFailure
+from .process import Ending, LineCounter, Process
+from .run_folder import RunRequest, prepare, run_name
+
+LOG = "engine.log"
+FULL_DISK_B = 100_000  # free space below which a failure is put down to it
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When to give up on a process. Generous: the cores may be shared."""
+
+    least_s: float = 300.0  # of wall time, for any run
+    factor: float = 20.0  # of the CPU time that a run is expected to take
+    silent_s: float = 120.0  # without a new sample, at the least
+    silent_share: float = 1.0  # of the expected CPU time without a new sample
+
+
+class Run:
+    """One request, its folders and its process."""
+
+    def __init__(self, request: RunRequest, engine: Engine, key: str, out_dir: Path):
+        self.request = request
+        self.case = request.case
+        self.engine = engine
+        self.key = key
+        name = run_name(request.packing, engine, key)
+        self.folder = out_dir / "runs" / name
+        self.failed_folder = out_dir / "failed" / name
+        self.work_dir = out_dir / "runs" / f".{name}.work"
+        self.started: datetime | None = None  # None: reused, or not yet
+        self.ending: Ending | None = None
+        self._process: Process | None = None
+
+    def start(self) -> None:
+        """Write the input and start the process. Raises EngineNotFound, OSError."""
+        self.discard()
+        shutil.rmtree(self.failed_folder, ignore_errors=True)
+        prepare(self.case, self.request.packing, self.engine, self.work_dir)
+        command = self.engine.command(self.case, self.work_dir)
+        command[command.index(self.engine.program)] = self.engine.executable()
+        self.started = datetime.now(timezone.utc)
+        self._samples = LineCounter(self.work_dir / self.engine.samples_file)
+        self._last_sample = time.monotonic()
+        environment = self.engine.environment()
+        self._process = Process(command, self.work_dir, environment, self.work_dir / LOG)
+
+    def poll(self, limits: Limits) -> bool:
+        """Whether the process has ended. Raises EngineFailure, having ended it, when there is no use in waiting on."""
+        self.ending = self._process.poll()
+        if self.ending is None and (overdue := self._overdue(limits)):
+            self._process.kill()
+            raise EngineFailure(f"{overdue} {self._stage()} and was ended")
+        return self.ending is not None
+
+    def progress(self) -> tuple[float, float | None]:
+        """Share of the samples written [0, 1], and the seconds left as far as that tells."""
+        lines = self._samples.lines
+        if self._samples.update() > lines:
+            self._last_sample = time.monotonic()
+        share = min(1.0, self._samples.lines / self.engine.lines_in_all(self.case))
+        return share, self._process.wall_s * (1 - share) / share if share > 0 else None
+
+    def read(self) -> Dataset:
+        """What a process that has ended left, its gates still to be set. Raises EngineFailure."""
+        if self.ending.status != 0:
+            log = (self.work_dir / LOG).read_bytes().decode(errors="replace")
+            complaint = self.engine.complaint(log)
+            raise EngineFailure(
+                f"{self.ending} {self._stage()}" + (f": {complaint}" if complaint else "")
+            )
+        try:
+            return self.engine.read_output(
+                self.case, self.request.packing, self.work_dir, self._manifest()
+            )
+        except DatasetError as error:
+            raise EngineFailure(
+                f"ended with status 0, but what it left is not a whole run: {error}"
+            ) from error
+
+    def keep(self, dataset: Dataset) -> None:
+        """Put the finished run in its place. Raises OSError."""
+        for name in self.engine.kept_output:
+            if (self.work_dir / OUTPUT / name).exists():
+                (self.work_dir / OUTPUT / name).rename(self.work_dir / name)
+        shutil.rmtree(self.work_dir / OUTPUT)
+        shutil.rmtree(self.folder, ignore_errors=True)  # whatever is there could not be reused
+        dataset.write(self.folder, extra_files_from=self.work_dir)
+        self.discard()
+
+    def put_aside(self, reason: str) -> str:
+        """Leave what there is for people to look at; returns the whole message."""
+        message = f"{self.engine.name} {reason}"
+        if shutil.disk_usage(self.work_dir.parent).free < FULL_DISK_B:
+            message += " (the disk is full)"
+        if not self.work_dir.exists():
+            return message
+        try:
+            self.failed_folder.parent.mkdir(exist_ok=True)
+            self.work_dir.rename(self.failed_folder)
+        except OSError:  # a full disk, again
+            return f"{message}; see {self.work_dir / LOG}"
+        return f"{message}; see {self.failed_folder / LOG}"
+
+    def stop(self) -> None:
+        """End the process, if there is one, and leave nothing."""
+        if self._process:
+            self._process.kill()
+        self.discard()
+
+    def discard(self) -> None:
+        shutil.rmtree(self.work_dir, ignore_errors=True)
+
+    def _overdue(self, limits: Limits) -> str | None:
+        self.progress()
+        expected_s = self.engine.expected_s(self.case)
+        allowed_s = max(limits.least_s, limits.factor * expected_s)
+        silent_s = max(limits.silent_s, limits.silent_share * expected_s)
+        if self._process.wall_s > allowed_s:
+            return f"ran past its time limit of {allowed_s:.3g} s"
+        if time.monotonic() - self._last_sample > silent_s:
+            return f"made no progress for {silent_s:.3g} s"
+        return None
+
+    def _stage(self) -> str:
+        self.progress()
+        samples = self._samples.lines - self.engine.lines_before_bar(self.case)
+        if samples <= 0:
+            return "while resting"
+        moved_s = (samples - 1) * self.case.resolved["time"]["sample_interval_s"]
+        depth_cm = 100 * self.case.resolved["bar"]["speed_m_s"] * moved_s
+        return f"with the bar at a depth of {depth_cm:.3g} cm"
+
+    def _manifest(self) -> dict:
+        case, packing, schedule = self.case, self.request.packing, self.engine.schedule(self.case)
+        return {
+            "schema_version": SCHEMA_VERSION,
+            "case_name": case.name,
+            "case_hash": case.hash,
+            "packing_hash": packing.hash,
+            "seed": packing.seed,
+            "engine": self.engine.name,
+            "engine_version": self.engine.version(),
+            "compiler": self.engine.compiler(),
+            "time_step_s": schedule.step_s,
+            "command": self.engine.command(case, self.work_dir),
+            "started_utc": self.started.isoformat(timespec="seconds"),
+            "wall_s": round(self.ending.wall_s, 3),
+            "cpu_s": round(self.ending.cpu_s, 3),
+            "particles": len(packing.particles),
+            "frames": schedule.frames,
+            "samples": schedule.samples,
+            "limitations": self.engine.limitations(case),
+            "gates": [],
+            "run_key": self.key,
+        }

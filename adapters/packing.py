@@ -1,0 +1,96 @@
+"""The settled bed every engine starts from: made once per seed by the native solver, then only read."""
+
+import hashlib
+import json
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import mkdtemp
+
+import numpy as np
+import pandas as pd
+
+from .case import Case, CaseError
+from .solver import call_solver, find_solver, messages
+
+COLUMNS = ("id", "x_m", "y_m", "radius_m")
+
+
+class PackingError(Exception):
+    """A folder that holds no usable packing."""
+
+
+@dataclass(frozen=True)
+class Packing:
+    """Discs at rest, unrotated, with zero shear springs. `folder` holds packing.csv and packing.json."""
+
+    seed: int
+    particles: pd.DataFrame  # id, x_m, y_m, radius_m; ids 0, 1, ...
+    bar_tip_m: float  # height of the bar's bottom face above the floor until the bar starts
+    contacts: int  # pairs of particles
+    hash: str  # SHA-256 [hex] of packing.csv
+    folder: Path
+
+    @classmethod
+    def read(cls, folder: Path) -> "Packing":
+        """Raises PackingError when a file is missing, torn or does not fit the other."""
+        folder = Path(folder)
+        try:
+            table = (folder / "packing.csv").read_bytes()
+            about = json.loads((folder / "packing.json").read_bytes())
+            particles = pd.read_csv(folder / "packing.csv", float_precision="round_trip")
+            _check(particles, about)
+            return cls(
+                seed=int(about["seed"]),
+                particles=particles,
+                bar_tip_m=float(about["bar_tip_m"]),
+                contacts=int(about["contacts"]),
+                hash=hashlib.sha256(table).hexdigest(),
+                folder=folder,
+            )
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise PackingError(f"{folder} holds no packing: {error}") from error
+
+
+def make_packing(case: Case, seed: int, folder: Path) -> Packing:
+    """The packing in `folder`, settled there by the solver unless it is there already.
+
+    It appears whole or not at all. Raises CaseError when the bed cannot be made from this case,
+    SolverError when the solver fails.
+    """
+    folder = Path(folder)
+    try:
+        return Packing.read(folder)
+    except PackingError:
+        shutil.rmtree(folder, ignore_errors=True)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = Path(mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+    try:
+        arguments = ["pack", "-", f"--seed={seed}", f"--output={unfinished}"]
+        done = call_solver([*arguments, f"--file-name={case.name}"], stdin=case.canonical)
+        if done.returncode:
+            raise CaseError(messages(done.stderr))
+        unfinished.chmod(0o755)  # mkdtemp keeps others out
+        unfinished.rename(folder)
+    finally:
+        shutil.rmtree(unfinished, ignore_errors=True)
+    return Packing.read(folder)
+
+
+def packing_key(case: Case, seed: int) -> str:
+    """Names a packing by all it is made from [hex]: the case, the seed and the program that settles it."""
+    program = hashlib.sha256(find_solver().read_bytes()).hexdigest()
+    return hashlib.sha256(f"{case.hash} {seed} {program}".encode()).hexdigest()
+
+
+def _check(particles: pd.DataFrame, about: dict) -> None:
+    if tuple(particles.columns) != COLUMNS:
+        raise ValueError(f"packing.csv has columns {', '.join(particles.columns)}")
+    if len(particles) != about["particles"] or len(particles) == 0:
+        raise ValueError(
+            f"packing.csv has {len(particles)} rows for {about['particles']} particles"
+        )
+    if not np.isfinite(particles.to_numpy(dtype=float)).all():
+        raise ValueError("packing.csv has values that are not finite")
+    if not np.array_equal(particles["id"], np.arange(len(particles))):
+        raise ValueError("packing.csv does not count its ids from 0")

@@ -1,0 +1,98 @@
+"""One engine's process: started, watched, ended."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+GRACE_S = 2.0  # between asking a process to end and ending it
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a process ended."""
+
+    status: int  # exit status; below 0: the signal that ended it
+    wall_s: float
+    cpu_s: float  # of the process and of the children it waited for
+
+    def __str__(self) -> str:
+        if self.status >= 0:
+            return f"ended with status {self.status}"
+        return f"was ended by signal {-self.status} ({signal.Signals(-self.status).name})"
+
+
+class Process:
+    """A process with a session of its own, so that its children end with it. Its output goes to a log."""
+
+    def __init__(self, command: list[str], folder: Path, environment: dict[str, str], log: Path):
+        self._started = time.monotonic()
+        with open(log, "wb") as output:
+            self._process = subprocess.Popen(
+                command,
+                cwd=folder,
+                env=os.environ | environment,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+    @property
+    def id(self) -> int:
+        """Of the process, of its group and of its session."""
+        return self._process.pid
+
+    @property
+    def wall_s(self) -> float:
+        return time.monotonic() - self._started
+
+    def poll(self) -> Ending | None:
+        """How it ended, or None while it runs. To be called until it says, and then no more."""
+        pid, status, usage = os.wait4(self._process.pid, os.WNOHANG)
+        if pid == 0:
+            return None
+        self._process.returncode = os.waitstatus_to_exitcode(status)
+        return Ending(self._process.returncode, self.wall_s, usage.ru_utime + usage.ru_stime)
+
+    def kill(self) -> None:
+        """End it and its children, and wait for that."""
+        if self._process.returncode is not None:
+            return
+        self._signal(signal.SIGTERM)
+        try:
+            self._process.wait(GRACE_S)
+        except subprocess.TimeoutExpired:
+            pass
+        self._signal(signal.SIGKILL)
+        self._process.wait()
+
+    def _signal(self, number: signal.Signals) -> None:
+        try:
+            os.killpg(self._process.pid, number)
+        except ProcessLookupError:
+            pass
+
+
+class LineCounter:
+    """The number of whole lines in a file that grows, or that is not there yet."""
+
+    def __init__(self, path: Path):
+        self._path = path
+        self._read = 0
+        self.lines = 0
+
+    def update(self) -> int:
+        try:
+            with open(self._path, "rb") as file:
+                file.seek(self._read)
+                new = file.read()
+        except FileNotFoundError:
+            return self.lines
+        self._read += len(new)
+        self.lines += new.count(b"\n")
+        return self.lines

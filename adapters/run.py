@@ -1,0 +1,181 @@
+"""The only place that starts engines: all the runs asked for, each to a dataset or to a reason why not."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from .dataset import Dataset, DatasetError
+from .engine import EngineFailure, EngineNotFound
+from .engines import get_engine
+from .gates import with_gates
+from .one_run import Limits, Run
+from .run_folder import RunRequest, run_key
+
+POLL_S = 0.1
+PROGRESS_S = 0.5
+REFERENCE = "native"  # the gates of the others refer to its contacts
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """What became of a request."""
+
+    request: RunRequest
+    dataset_folder: Path | None
+    failure: str | None  # why there is no dataset
+    status: str  # done, reused, failed, missing, unsupported
+
+
+# Called about twice a second for every run in progress: the request, the share done, the seconds left if known.
+Progress = Callable[[RunRequest, float, float | None], None]
+
+
+def run_all(
+    requests: Sequence[RunRequest],
+    out_dir: Path,
+    jobs: int,
+    on_progress: Progress = lambda request, share, seconds_left: None,
+    limits: Limits = Limits(),
+) -> list[RunResult]:
+    """Run or reuse every request, at most `jobs` at a time; one result per request, in their order.
+
+    Datasets go to `out_dir`/runs. A run that fails leaves what it had in `out_dir`/failed, and the others go on.
+    Whatever ends this function early, such as Ctrl-C, ends the processes too.
+    """
+    out_dir = Path(out_dir)
+    (out_dir / "runs").mkdir(parents=True, exist_ok=True)
+    queue = _Queue(out_dir, jobs, on_progress, limits)
+    try:
+        for request in requests:
+            queue.admit(request)
+        queue.work()
+    finally:
+        queue.stop()
+    return [queue.results[id(request)] for request in requests]
+
+
+class _Queue:
+    def __init__(self, out_dir: Path, jobs: int, on_progress: Progress, limits: Limits):
+        self._out_dir = out_dir
+        self._jobs = jobs
+        self._on_progress = on_progress
+        self._limits = limits
+        self._waiting: list[Run] = []
+        self._running: list[Run] = []
+        self._ended: list[tuple[Run, Dataset]] = []  # until the contacts for their gates are known
+        self._native_contacts: dict[str, int] = {}  # at the end of the rest, by packing
+        self.results: dict[int, RunResult] = {}
+
+    def admit(self, request: RunRequest) -> None:
+        """Answer what needs no process, and queue the rest."""
+        engine = get_engine(request.engine_name)
+        if reasons := engine.unsupported(request.case):
+            return self._answer(
+                request, "unsupported", failure=f"{engine.name}: {'; '.join(reasons)}"
+            )
+        try:
+            run = Run(
+                request, engine, run_key(request.case, request.packing, engine), self._out_dir
+            )
+        except EngineNotFound as error:
+            return self._answer(request, "missing", failure=str(error))
+        if dataset := _finished(run):
+            self._end(run, dataset)
+        else:
+            self._waiting.append(run)
+
+    def work(self) -> None:
+        # The native runs first, as the gates of the others wait for them and they are short; then the longest.
+        self._waiting.sort(
+            key=lambda run: (run.engine.name != REFERENCE, -run.engine.expected_s(run.case))
+        )
+        told = 0.0
+        while self._waiting or self._running:
+            self._start()
+            self._poll()
+            self._keep_ended()
+            if time.monotonic() - told >= PROGRESS_S:
+                told = time.monotonic()
+                for run in self._running:
+                    self._on_progress(run.request, *run.progress())
+            time.sleep(POLL_S)
+        self._keep_ended()
+
+    def stop(self) -> None:
+        for run in [*self._running, *(run for run, _ in self._ended)]:
+            run.stop()
+
+    def _start(self) -> None:
+        while self._waiting and len(self._running) < self._jobs:
+            run = self._waiting.pop(0)
+            self._running.append(run)
+            try:
+                run.start()
+            except (EngineNotFound, OSError) as error:
+                self._running.remove(run)
+                self._fail(run, f"could not be started: {error}")
+
+    def _poll(self) -> None:
+        for run in list(self._running):
+            try:
+                if not run.poll(self._limits):
+                    continue
+                dataset = run.read()
+            except (EngineFailure, OSError) as failure:
+                self._running.remove(run)
+                self._fail(run, str(failure))
+            else:
+                self._running.remove(run)
+                self._end(run, dataset)
+
+    def _end(self, run: Run, dataset: Dataset) -> None:
+        self._ended.append((run, dataset))
+        if run.engine.name == REFERENCE:
+            contacts = int(dataset.resistance["contacts"].iloc[0])
+            self._native_contacts[run.request.packing.hash] = contacts
+
+    def _keep_ended(self) -> None:
+        """Finish the runs whose gates need not wait for a native run."""
+        unfinished = [*self._waiting, *self._running]
+        awaited = {run.request.packing.hash for run in unfinished if run.engine.name == REFERENCE}
+        ready = [entry for entry in self._ended if entry[0].request.packing.hash not in awaited]
+        for entry in ready:
+            self._ended.remove(entry)
+            self._keep(*entry)
+
+    def _keep(self, run: Run, dataset: Dataset) -> None:
+        gated = with_gates(dataset, self._native_contacts.get(run.request.packing.hash))
+        try:
+            if run.started:
+                run.keep(gated)
+            elif gated.manifest != dataset.manifest:
+                gated.write_manifest(run.folder)
+        except OSError as error:
+            self._fail(run, f"ended well, but its dataset cannot be written: {error}")
+        else:
+            self._on_progress(run.request, 1.0, 0.0)
+            self._answer(run.request, "done" if run.started else "reused", folder=run.folder)
+
+    def _fail(self, run: Run, reason: str) -> None:
+        self._answer(run.request, "failed", failure=run.put_aside(reason))
+
+    def _answer(
+        self,
+        request: RunRequest,
+        status: str,
+        folder: Path | None = None,
+        failure: str | None = None,
+    ) -> None:
+        self.results[id(request)] = RunResult(request, folder, failure, status)
+
+
+def _finished(run: Run) -> Dataset | None:
+    """The dataset that an earlier call left for the same run, if it is whole."""
+    try:
+        dataset = Dataset.read(run.folder)
+    except DatasetError:
+        return None
+    return dataset if dataset.manifest["run_key"] == run.key else None

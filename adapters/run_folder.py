@@ -1,0 +1,69 @@
+"""A run's folder: what goes in before the engine starts, and the names by which runs are found again."""
+
+from __future__ import annotations
+
+import hashlib
+import shlex
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+from .case import Case
+from .engine import INPUTS, OUTPUT, Engine
+from .packing import Packing
+
+
+@dataclass(frozen=True)
+class RunRequest:
+    """One engine on one packing."""
+
+    case: Case
+    packing: Packing
+    engine_name: str
+
+
+def run_key(case: Case, packing: Packing, engine: Engine) -> str:
+    """SHA-256 [hex] of all that the result depends on. Raises EngineNotFound."""
+    parts = (case.hash, packing.hash, engine.name, engine.version(), engine.digest())
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def run_name(packing: Packing, engine: Engine, key: str) -> str:
+    """The folder's name."""
+    return f"{engine.name}-seed{packing.seed}-{key[:12]}"
+
+
+def prepare(case: Case, packing: Packing, engine: Engine, folder: Path) -> None:
+    """Fill the new `folder` with all that a run reads, and with a README that says how to start it by hand."""
+    (folder / INPUTS).mkdir(parents=True)
+    (folder / OUTPUT).mkdir()
+    (folder / INPUTS / "case.json").write_bytes(case.canonical)
+    for name in ("packing.csv", "packing.json"):
+        shutil.copyfile(packing.folder / name, folder / INPUTS / name)
+    engine.write_input(case, packing, folder)
+    (folder / "README.txt").write_text(_readme(case, packing, engine, folder), encoding="utf-8")
+
+
+def rerun_command(case: Case, engine: Engine, folder: Path) -> str:
+    """The one shell command that runs the engine by hand, in `folder`."""
+    settings = (f"{name}={shlex.quote(value)}" for name, value in engine.environment().items())
+    return f"mkdir -p {OUTPUT} && {' '.join(settings)} {shlex.join(engine.command(case, folder))}"
+
+
+def _readme(case: Case, packing: Packing, engine: Engine, folder: Path) -> str:
+    return f"""\
+{case.name}, seed {packing.seed}, by {engine.name}
+
+To run it again by hand, in this folder:
+
+    {rerun_command(case, engine, folder)}
+
+{INPUTS}/    all that the engine reads
+{OUTPUT}/    what it then writes
+
+Once finished, a run has beside these
+manifest.json    versions, time step, provenance, gates
+motion.h5        positions and velocities (H5MD 1.1)
+resistance.csv   forces on the bar
+engine.log       what the engine said
+"""

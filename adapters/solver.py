@@ -1,0 +1,41 @@
+"""Finding and calling the program `crossdem-solver`."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+_IN_CHECKOUT = Path(__file__).resolve().parent.parent / "build/release/solver/crossdem-solver"
+
+
+class SolverError(Exception):
+    """crossdem-solver is missing, or ended in a way that is no fault of its input."""
+
+
+def find_solver() -> Path:
+    """The program named by CROSSDEM_SOLVER, else the one built in this checkout, else the one on PATH."""
+    named = os.environ.get("CROSSDEM_SOLVER")
+    found = named or (_IN_CHECKOUT if _IN_CHECKOUT.exists() else shutil.which("crossdem-solver"))
+    if found and os.access(found, os.X_OK) and Path(found).is_file():
+        return Path(found).resolve()
+    if named:
+        raise SolverError(f"CROSSDEM_SOLVER={named} is not a program; unset it or correct it")
+    raise SolverError("crossdem-solver is not built; run scripts/quickstart, which builds it")
+
+
+def call_solver(arguments: list[str], stdin: bytes = b"") -> subprocess.CompletedProcess:
+    """Runs the solver to its end. Status 2 (bad input) is for the caller; any other but 0 is a SolverError."""
+    try:
+        done = subprocess.run([find_solver(), *arguments], input=stdin, capture_output=True)
+    except OSError as error:
+        raise SolverError(f"crossdem-solver cannot be started: {error.strerror}") from error
+    if done.returncode in (0, 2):
+        return done
+    said = messages(done.stderr)
+    ending = f"crossdem-solver {arguments[0]} ended with status {done.returncode}"
+    raise SolverError(": ".join([ending, *said[-1:]]))
+
+
+def messages(stderr: bytes) -> list[str]:
+    """The non-empty lines a program wrote for people."""
+    return [line for line in stderr.decode(errors="replace").splitlines() if line.strip()]

@@ -1,0 +1,1 @@
+"""What the runs say: quantities, checks, a verdict and its report. Reads Datasets only, knows no engine."""

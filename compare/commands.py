@@ -1,0 +1,87 @@
+"""What the commands of the command line do; each returns its exit code."""
+
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from crossdem import ExitCode
+from crossdem.adapters.case import Case, CaseError, load_case
+from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.workspace import Workspace
+
+from .comparison import compare_runs, comparison_faults
+from .runs import Runs, run_engines, write_inputs
+from .summary import print_summary
+
+
+def check(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
+    case = _load(case_file, overrides)
+    if faults := comparison_faults(case, ()):
+        raise CaseError([f"{case_file}: {fault}" for fault in faults])
+    with _workspace(case, overrides, out) as workspace:
+        runs = run_engines(case, engines, seeds, workspace, jobs, Console())
+    datasets = [Dataset.read(folder) for folder in runs.folders]
+    return _report(case, datasets, runs.failures, workspace)
+
+
+def run(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
+    case = _load(case_file, overrides)
+    with _workspace(case, overrides, out) as workspace:
+        return _tell(run_engines(case, engines, seeds, workspace, jobs, Console()))
+
+
+def generate(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
+    case = _load(case_file, overrides)
+    with _workspace(case, overrides, out) as workspace:
+        return _tell(write_inputs(case, engines, seeds, workspace, jobs, Console()))
+
+
+def resolve(case_file, overrides) -> ExitCode:
+    click.echo(_load(case_file, overrides).canonical)
+    return ExitCode.AGREES
+
+
+def compare(folders, out) -> ExitCode:
+    datasets = [Dataset.read(folder) for folder in folders]
+    case = Case.from_canonical((folders[0] / "inputs" / "case.json").read_bytes())
+    if faults := comparison_faults(case, datasets):
+        raise CaseError(faults)
+    return _report(case, datasets, {}, Workspace(out or Path("results") / f"{case.name}-compare"))
+
+
+def _load(case_file: Path, overrides: list[str]) -> Case:
+    case = load_case(case_file, overrides)
+    for warning in case.warnings:
+        click.echo(warning, err=True)
+    return case
+
+
+@contextmanager
+def _workspace(case: Case, overrides: list[str], out: Path | None):
+    """The output folder; a variant's own by default. Gone again when it was new and the case turns out to be at fault."""
+    variant = f"-{case.hash[:8]}" if overrides else ""
+    workspace = Workspace(out or Path("results") / f"{case.name}{variant}")
+    try:
+        yield workspace
+    except CaseError:
+        workspace.discard_if_new()
+        raise
+
+
+def _report(case: Case, datasets: list[Dataset], failures: dict, workspace: Workspace) -> ExitCode:
+    from .report import write_report  # here: its drawing library takes half a second to load
+
+    comparison = compare_runs(case, datasets, failures)
+    page = write_report(comparison, workspace.root)
+    print_summary(comparison, page)
+    return comparison.verdict.exit_code
+
+
+def _tell(runs: Runs) -> ExitCode:
+    for folder in runs.folders:
+        click.echo(folder)
+    for (engine, seed), why in runs.failures.items():
+        click.echo(f"{engine}, seed {seed}: {why}", err=True)
+    return ExitCode.ENGINE_FAILED if runs.failures else ExitCode.AGREES

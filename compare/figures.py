@@ -1,0 +1,203 @@
+"""The report's plots, as SVG text to stand inside the page; lines and letters take the page's colour.
+
+No text of a case or a dataset is drawn: titles and legends belong to the page.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+
+import matplotlib
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from . import motion, resistance
+from .colours import EngineStyle, engine_styles
+from .comparison import Comparison
+
+INK = "#0a0b0c"  # stands for the page's text colour, which Matplotlib cannot know
+FINE_BIN_M = 0.001  # of the thin lines: shows the fluctuation with few points
+COLOUR_STEPS = 8
+PER_INCH = 96  # CSS pixels
+STYLE = {
+    "svg.fonttype": "none",
+    "font.size": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.alpha": 0.18,
+    "grid.color": INK,
+    "legend.frameon": False,
+    **{key: INK for key in ("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color")},
+    "ytick.color": INK,
+}
+
+
+def resistance_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
+    """Resistance against depth: thin for each seed (means of 1 mm), thick for the mean of all seeds per cm."""
+
+    def draw(axes: Axes) -> None:
+        for engine, style in engine_styles(comparison.engines).items():
+            tables = [run.resistance for run in comparison.of(engine)]
+            for table in tables:
+                fine = resistance.resistance_profile(table, FINE_BIN_M)["mean_N"]
+                axes.plot(100 * fine.index, fine, color=style.colour, linewidth=0.8, alpha=0.55)
+            if tables:
+                mean = resistance.profile_over_seeds(
+                    [resistance.resistance_profile(table) for table in tables]
+                )["mean_N"]
+                _thick(axes, 100 * mean.index, mean, style)
+        axes.set(xlabel="depth of the tip, cm", ylabel="resistance, N")
+        axes.set_xlim(left=0)
+
+    return _svg(draw, size_px)
+
+
+def movement_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
+    """Mean downward displacement of the particles near the bar against depth, mean of all seeds."""
+
+    def draw(axes: Axes) -> None:
+        speed_m_s = comparison.case.resolved["bar"]["speed_m_s"]
+        for engine, style in engine_styles(comparison.engines).items():
+            runs = comparison.of(engine)
+            if runs:
+                history = pd.concat(
+                    [motion.near_bar_history(run)["downward_m"] for run in runs], axis="columns"
+                )
+                depth_cm = 100 * speed_m_s * history.index.to_numpy()
+                _thick(axes, depth_cm, 1000 * history.mean(axis="columns"), style)
+        axes.set(xlabel="depth of the tip, cm", ylabel="downward movement, mm")
+        axes.set_xlim(left=0)
+
+    return _svg(draw, size_px)
+
+
+def surface_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
+    """Surface of the bed at the end, mean of all seeds; grey: at t = 0, mean of all runs."""
+
+    def draw(axes: Axes) -> None:
+        before = [motion.surface_profile(run, 0) for run in comparison.datasets]
+        start = pd.concat(before, axis="columns").mean(axis="columns")
+        axes.plot(100 * start.index, 100 * start, color=INK, alpha=0.5, linewidth=1)
+        for engine, style in engine_styles(comparison.engines).items():
+            after = [motion.surface_profile(run) for run in comparison.of(engine)]
+            if after:
+                end = pd.concat(after, axis="columns").mean(axis="columns")
+                _thick(axes, 100 * end.index, 100 * end, style)
+        bar = comparison.case.resolved["bar"]
+        left_cm = 100 * (bar["centre_x_m"] - bar["width_m"] / 2)
+        axes.axvspan(left_cm, left_cm + 100 * bar["width_m"], color=INK, alpha=0.15, linewidth=0)
+        axes.set(xlabel="x, cm", ylabel="height of the surface, cm")
+
+    return _svg(draw, size_px)
+
+
+def displacement_plots(comparison: Comparison, size_px: tuple[int, int]) -> dict[str, str]:
+    """Displacement field at the end for each engine with results, mean of all seeds, in one scale of colours."""
+    fields = {
+        engine: motion.field_over_seeds([motion.displacement_field(run) for run in runs])
+        for engine in comparison.engines
+        if (runs := comparison.of(engine))
+    }
+    if not fields:
+        return {}
+    levels_mm = _levels_mm(max(_length_mm(field).max() for field in fields.values()))
+    tip_m = comparison.datasets[0].motion.bar_tip_m[-1]
+    return {
+        engine: _svg(lambda axes: _draw_field(axes, field, comparison, tip_m, levels_mm), size_px)
+        for engine, field in fields.items()
+    }
+
+
+def _draw_field(axes: Axes, field: pd.DataFrame, comparison: Comparison, tip_m, levels_mm) -> None:
+    case = comparison.case.resolved
+    cell_cm = 100 * case["marks"]["cell_size_m"]
+    x_cm, y_cm = (100 * field.index.get_level_values(name).to_numpy() for name in ("x_m", "y_m"))
+    colours = matplotlib.colormaps["viridis"]
+    norm = BoundaryNorm(levels_mm, colours.N)
+    length_mm = _length_mm(field)
+    for x, y, value in zip(x_cm - cell_cm / 2, y_cm - cell_cm / 2, length_mm):
+        axes.add_patch(
+            Rectangle((x, y), cell_cm, cell_cm, color=colours(norm(value)), linewidth=0.4)
+        )
+    axes.quiver(
+        x_cm,
+        y_cm,
+        100 * field["displacement_x_m"],
+        100 * field["displacement_y_m"],
+        facecolor="white",
+        edgecolor="black",
+        linewidth=0.4,
+        angles="xy",
+        scale_units="xy",
+        scale=1,
+        width=0.005,
+    )
+    bar = case["bar"]
+    width_cm, top_cm = 100 * case["container"]["width_m"], 100 * case["container"]["height_m"]
+    axes.add_patch(
+        Rectangle(
+            (100 * (bar["centre_x_m"] - bar["width_m"] / 2), 100 * tip_m),
+            100 * bar["width_m"],
+            100 * bar["length_m"],
+            facecolor="#8a8f98",
+            edgecolor=INK,
+        )
+    )
+    axes.set(xlim=(0, width_cm), ylim=(0, top_cm), aspect="equal", xlabel="x, cm", ylabel="y, cm")
+    axes.grid(False)
+    scale = matplotlib.cm.ScalarMappable(norm, colours)
+    axes.figure.colorbar(
+        scale,
+        ax=axes,
+        orientation="horizontal",
+        label="displacement, mm",
+        aspect=30,
+        pad=0.03,
+        format="%g",
+    )
+
+
+def _levels_mm(largest_mm: float) -> list[float]:
+    """Limits of the colours, 1-2-5 in each decade: near the bar the bed moves ten times as far as elsewhere."""
+    series = [step * 10.0**decade for decade in range(-3, 4) for step in (1, 2, 5)]
+    top = next(
+        (place for place, level in enumerate(series) if level >= largest_mm), len(series) - 1
+    )
+    return [0.0, *series[max(0, top - COLOUR_STEPS + 2) : max(top, COLOUR_STEPS - 2) + 1]]
+
+
+def _length_mm(field: pd.DataFrame) -> np.ndarray:
+    return 1000 * np.hypot(field["displacement_x_m"], field["displacement_y_m"]).to_numpy()
+
+
+def _thick(axes: Axes, x, y, style: EngineStyle) -> None:
+    """The line of one engine; its marker tells it apart without colour."""
+    axes.plot(
+        x,
+        y,
+        color=style.colour,
+        linewidth=2.2,
+        marker=style.marker,
+        markersize=5,
+        markevery=max(1, len(x) // 12),
+        dashes=style.dash or (None, None),
+    )
+
+
+def _svg(draw, size_px: tuple[int, int]) -> str:
+    """The drawing of `draw(axes)`, as an <svg> element that scales with its surroundings."""
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=[length / PER_INCH for length in size_px], layout="constrained")
+        draw(figure.add_subplot())
+        text = io.StringIO()
+        figure.savefig(text, format="svg", transparent=True)
+    svg = text.getvalue()
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<metadata>.*?</metadata>|<style.*?</style>", "", svg, flags=re.DOTALL)
+    return svg.replace(INK, "currentColor")

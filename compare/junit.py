@@ -1,0 +1,88 @@
+"""The comparison as a test report, junit.xml: a test for the verdict, for each run, each gate, each pair and check.
+
+Only agreement passes; what stays open is skipped, so that no continuous integration counts it as agreement.
+"""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+from . import checks
+from .comparison import Comparison
+from .wording import explanation, printable
+
+# Outcome: how the test ends; None is a pass.
+ENDS = {
+    checks.AGREES: None,
+    checks.DIFFERS: "failure",
+    checks.INCONCLUSIVE: "skipped",
+    checks.NOT_COMPARABLE: "error",
+}
+
+
+def junit_xml(comparison: Comparison) -> bytes:
+    root = ElementTree.Element("testsuites", name=printable(comparison.case.name))
+    verdict = comparison.verdict
+    _suite(
+        root,
+        "verdict",
+        [("verdict", verdict.word, "failure" if verdict.exit_code else None, verdict.sentence)],
+    )
+    finished = [(run.engine, f"seed {run.seed}", None, "") for run in comparison.datasets]
+    failed = [
+        (engine, f"seed {seed}", "error", message)
+        for (engine, seed), message in comparison.failures.items()
+    ]
+    _suite(root, "runs", finished + failed)
+    _suite(
+        root,
+        "gates",
+        [
+            (
+                run.engine,
+                f"seed {run.seed}: {gate['name']}",
+                None if gate["passed"] else "failure",
+                gate["message"],
+            )
+            for run in comparison.datasets
+            for gate in run.manifest["gates"]
+        ],
+    )
+    _suite(
+        root,
+        "checks",
+        [
+            (
+                " against ".join(result.pair),
+                result.check.quantity.name,
+                ENDS[result.outcome],
+                f"{result.outcome}: {explanation(result)}",
+            )
+            for result in comparison.results
+        ],
+    )
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
+
+
+def _suite(root, name: str, cases: list[tuple[str, str, str | None, str]]) -> None:
+    """A suite of `cases`: (class, name, how it ends, message)."""
+    ends = [end for _, _, end, _ in cases]
+    suite = ElementTree.SubElement(
+        root,
+        "testsuite",
+        name=name,
+        tests=str(len(cases)),
+        failures=str(ends.count("failure")),
+        errors=str(ends.count("error")),
+        skipped=str(ends.count("skipped")),
+    )
+    for class_name, case_name, end, message in cases:
+        test = ElementTree.SubElement(
+            suite,
+            "testcase",
+            classname=f"{name}.{printable(class_name)}",
+            name=printable(case_name),
+        )
+        if end:
+            ElementTree.SubElement(test, end, message=printable(message))

@@ -1,0 +1,76 @@
+"""The quantities that a check can name: one number per run, each with its unit and definition."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import pandas as pd
+
+from crossdem.adapters.dataset import Dataset
+
+from . import motion, resistance
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One number of a run: a function of its resistance table, or of the whole dataset."""
+
+    title: str  # as people say it
+    unit: str  # "" for a plain number
+    function: Callable[..., float]
+    of_table: bool = False
+
+    @property
+    def name(self) -> str:
+        """As in the case's [[check]] tables, unit included."""
+        return self.function.__name__
+
+    @property
+    def definition(self) -> str:
+        return " ".join((self.function.__doc__ or "").split())
+
+    def of(self, dataset: Dataset) -> float:
+        return self.function(dataset.resistance if self.of_table else dataset)
+
+
+QUANTITIES = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("mean resistance", "N", resistance.mean_resistance_N, of_table=True),
+        Quantity("work of the bar", "J", resistance.work_J, of_table=True),
+        Quantity("slope over depth", "N/m", resistance.resistance_slope_N_m, of_table=True),
+        Quantity("bearing factor", "", resistance.bearing_factor),
+        Quantity("tip share", "", resistance.tip_share, of_table=True),
+        Quantity("shaft share", "", resistance.shaft_share, of_table=True),
+        Quantity("fluctuation", "N", resistance.fluctuation_N, of_table=True),
+        Quantity("contacts per particle", "", resistance.contacts_per_particle),
+        Quantity("surface bump", "m", motion.surface_bump_m),
+        Quantity("movement near the bar", "m", motion.near_bar_movement_m),
+    )
+}
+
+
+def unknown_quantities(case: dict) -> list[str]:
+    """A fault line for each check of the resolved `case` that names no quantity known here."""
+    lines = []
+    for number, check in enumerate(case.get("check", [])):
+        name = check["quantity"]
+        if name in QUANTITIES:
+            continue
+        near = difflib.get_close_matches(name, QUANTITIES, n=1)
+        hint = f"did you mean {near[0]!r}? " if near else ""
+        lines.append(
+            f"check[{number}].quantity: unknown quantity {name!r}; {hint}known: {', '.join(QUANTITIES)}"
+        )
+    return lines
+
+
+def endpoints(datasets: list[Dataset]) -> pd.DataFrame:
+    """Every quantity of every run: one row per (engine, seed), one column per quantity."""
+    index = pd.MultiIndex.from_tuples(
+        [(dataset.engine, dataset.seed) for dataset in datasets], names=["engine", "seed"]
+    )
+    rows = [[quantity.of(dataset) for quantity in QUANTITIES.values()] for dataset in datasets]
+    return pd.DataFrame(rows, index=index, columns=list(QUANTITIES), dtype=float)

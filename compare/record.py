@@ -1,0 +1,105 @@
+"""The comparison as plain data: report.json, for other programs."""
+
+from __future__ import annotations
+
+import math
+from importlib import metadata
+
+from .comparison import Comparison
+from .quantities import QUANTITIES
+from .wording import explanation
+
+SCHEMA_VERSION = 1
+LIBRARIES = ("numpy", "pandas", "scipy", "statsmodels")  # that the numbers come from
+# Of a run's manifest; the rest stays with the run.
+PROVENANCE = (
+    "engine",
+    "seed",
+    "engine_version",
+    "compiler",
+    "time_step_s",
+    "particles",
+    "frames",
+    "samples",
+    "wall_s",
+    "cpu_s",
+    "started_utc",
+    "case_hash",
+    "packing_hash",
+    "run_key",
+    "gates",
+    "limitations",
+)
+
+
+def record(comparison: Comparison) -> dict:
+    """Everything but the series; numbers in SI, null where there is none. Of a ratio, differences are logarithms."""
+    verdict = comparison.verdict
+    return _plain(
+        {
+            "schema_version": SCHEMA_VERSION,
+            "case": {
+                "name": comparison.case.name,
+                "title": comparison.case.resolved["title"],
+                "hash": comparison.case.hash,
+            },
+            "verdict": vars(verdict) | {"exit_code": int(verdict.exit_code)},
+            "engines": comparison.engines,
+            "seeds": comparison.seeds,
+            "checks": [_check(result) for result in comparison.results],
+            "quantities": {
+                name: {
+                    "title": quantity.title,
+                    "unit": quantity.unit,
+                    "definition": quantity.definition,
+                }
+                for name, quantity in QUANTITIES.items()
+            },
+            "runs": [
+                {key: run.manifest[key] for key in PROVENANCE}
+                | {"values": comparison.endpoints.loc[(run.engine, run.seed)].to_dict()}
+                for run in comparison.datasets
+            ],
+            "failures": [
+                {"engine": engine, "seed": seed, "message": message}
+                for (engine, seed), message in comparison.failures.items()
+            ],
+            "libraries": libraries(),
+        }
+    )
+
+
+def libraries() -> dict[str, str]:
+    return {name: metadata.version(name) for name in LIBRARIES}
+
+
+def _check(result) -> dict:
+    check = result.check
+    return {
+        "quantity": check.quantity.name,
+        "pair": result.pair,
+        "outcome": result.outcome,
+        "explanation": explanation(result),
+        "kind": check.kind,
+        "margin": check.margin,
+        "seed_scatter": check.seed_scatter,
+        "reason": check.reason,
+        "seeds": result.seeds,
+        "means": result.means,
+        "difference": result.difference,
+        "interval_90": result.interval,
+        "scatter": result.scatter,
+        "alarm": result.alarm,
+        "seeds_needed": result.seeds_needed,
+    }
+
+
+def _plain(value):
+    """What strict JSON can hold: no tuples, no NaN."""
+    if isinstance(value, dict):
+        return {key: _plain(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,159 @@
+"""The report of a comparison: report.html (self-contained), report.md, report.json and junit.xml."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+
+import jinja2
+from markupsafe import Markup, escape
+
+from . import beds, figures, tables
+from .colours import engine_styles
+from .comparison import Comparison
+from .junit import junit_xml
+from .record import libraries, record
+from .wording import MINUS, printable
+
+TEMPLATES = Path(__file__).parent / "templates"
+WIDE_PX, NARROW_PX, PANEL_PX = (900, 400), (380, 320), (440, 320)
+FIELD_PX = (400, 460)
+
+
+def write_report(comparison: Comparison, out_dir: Path) -> Path:
+    """Write the four files into `out_dir`, each whole or not at all; returns the path of report.html, written last."""
+    out_dir = Path(out_dir)
+    out_dir.mkdir(parents=True, exist_ok=True)
+    values = _values(comparison)
+    text = json.dumps(record(comparison), indent=2, ensure_ascii=False, allow_nan=False)
+    _write(out_dir / "report.json", (text + "\n").encode())
+    _write(out_dir / "junit.xml", junit_xml(comparison))
+    _write(out_dir / "report.md", _render("report.md", values).encode())
+    values |= _pictures(comparison)
+    _write(out_dir / "report.html", _render("report.html", values).encode())
+    return out_dir / "report.html"
+
+
+def _values(comparison: Comparison) -> dict:
+    """What both templates show."""
+    return {
+        "title": comparison.case.resolved["title"],
+        "case": comparison.case,
+        "comparison": comparison,
+        "verdict": comparison.verdict,
+        "engines": comparison.engines,
+        "versions": _versions(comparison),
+        "headlines": tables.headlines(comparison),
+        "profile_rows": tables.profile_rows(comparison),
+        "quantity_rows": tables.quantity_rows(comparison),
+        "check_blocks": tables.check_blocks(comparison),
+        "limitations": {
+            engine: comparison.of(engine)[0].manifest["limitations"]
+            for engine in comparison.engines
+            if comparison.of(engine)
+        },
+        "libraries": libraries(),
+    }
+
+
+def _pictures(comparison: Comparison) -> dict:
+    """What only the page shows."""
+    runs = {
+        engine: comparison.of(engine)[0] for engine in comparison.engines if comparison.of(engine)
+    }
+    shared = _shared_seed(comparison)
+    runs = {
+        engine: next((run for run in comparison.of(engine) if run.seed == shared), first)
+        for engine, first in runs.items()
+    }
+    times_s = [
+        f"{comparison.case.resolved['time']['penetration_s'] * stage:.3g} s"
+        for stage in beds.STAGES
+    ]
+    return {
+        "colours": {
+            engine: style.colour for engine, style in engine_styles(comparison.engines).items()
+        },
+        "resistance_wide": Markup(figures.resistance_plot(comparison, WIDE_PX)),
+        "resistance_narrow": Markup(figures.resistance_plot(comparison, NARROW_PX)),
+        "fields": {
+            engine: Markup(svg)
+            for engine, svg in figures.displacement_plots(comparison, FIELD_PX).items()
+        },
+        "surface": Markup(figures.surface_plot(comparison, PANEL_PX)) if runs else "",
+        "movement": Markup(figures.movement_plot(comparison, PANEL_PX)),
+        "beds": {
+            engine: (
+                run.seed,
+                [
+                    (time, Markup(beds.bed_picture(run, frame)))
+                    for time, frame in zip(times_s, beds.stage_frames(run))
+                ],
+            )
+            for engine, run in runs.items()
+        },
+        "style": Markup((TEMPLATES / "report.css").read_text(encoding="utf-8")),
+    }
+
+
+def _versions(comparison: Comparison) -> dict[str, str]:
+    """What each engine says of itself; of several versions, all."""
+    return {
+        engine: ", ".join(dict.fromkeys(run.manifest["engine_version"] for run in runs))
+        or "no result"
+        for engine in comparison.engines
+        for runs in [comparison.of(engine)]
+    }
+
+
+def _shared_seed(comparison: Comparison) -> int | None:
+    """The first seed that every engine with results has, to show the same bed in all of them."""
+    seeds = [{run.seed for run in runs} for e in comparison.engines if (runs := comparison.of(e))]
+    return min(set.intersection(*seeds), default=None) if seeds else None
+
+
+def _render(name: str, values: dict) -> str:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=_printable,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"cell": _cell, "glued": _glued, "shown": _shown}
+    return environment.get_template(name).render(values)
+
+
+def _printable(value: object) -> object:
+    return printable(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+
+
+def _cell(text: object) -> Markup:
+    """Text for Markdown: one line, with none of HTML's or Markdown's own characters at work."""
+    line = " ".join(printable(str(text)).split())
+    for character in "\\`*_[]|~#":
+        line = line.replace(character, f"\\{character}")
+    return escape(line)
+
+
+def _glued(text: str) -> str:
+    """Numbers that do not break from their units, only at "to", "/" and before the scatter."""
+    return re.sub(r"(?<!to)(?<!/) (?!to\b|/|±)", "\N{NO-BREAK SPACE}", text)
+
+
+def _shown(value: object) -> str:
+    """A value of a manifest: numbers short, whatever else as it is."""
+    return f"{value:.3g}".replace("-", MINUS) if isinstance(value, float) else str(value)
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Replace `path` by `content`, whole or not at all."""
+    partial = path.with_name(f".{path.name}.partial")
+    with partial.open("wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+    partial.replace(path)

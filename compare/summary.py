@@ -1,0 +1,47 @@
+"""The verdict on the terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from . import tables, verdict
+from .comparison import Comparison
+from .wording import printable
+
+COLOURS = {
+    verdict.AGREES: "green",
+    verdict.CONSISTENT: "green",
+    verdict.DIFFERS: "red",
+    verdict.ENGINE_FAILED: "magenta",
+    verdict.INCONCLUSIVE: "yellow",
+}
+
+
+def print_summary(
+    comparison: Comparison, report: Path | None = None, console: Console | None = None
+) -> None:
+    """Print the verdict, the mean of each quantity for each engine, and where the report is.
+
+    No text of a case or dataset is taken as rich's markup.
+    """
+    console = console or Console()
+    result = comparison.verdict
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("mean of all seeds")
+    for engine in comparison.engines:
+        table.add_column(Text(printable(engine)), justify="right")
+    for title, _, cells in tables.quantity_rows(comparison):
+        table.add_row(title, *cells)
+    console.print(table)
+    for (engine, seed), message in comparison.failures.items():
+        console.print(Text(printable(f"{engine}, seed {seed}: {message}"), style="magenta"))
+    console.print()
+    console.print(Text(result.word, style=f"bold {COLOURS[result.word]}"))
+    console.print(Text(printable(result.sentence)))
+    console.print(Text(f"Next: {result.next_step}"))
+    if report is not None:
+        console.print(Text(f"Report: {report}"), soft_wrap=True)

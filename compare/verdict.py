@@ -1,0 +1,159 @@
+"""One verdict from all runs, gates and checks, and the exit code that says the same."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from crossdem import ExitCode
+
+from . import checks
+from .checks import MOST_SEEDS, CheckResult
+from .wording import explanation, plural, signed_difference
+
+AGREES = "AGREES"
+CONSISTENT = "CONSISTENT"
+DIFFERS = "DIFFERS"
+ENGINE_FAILED = "ENGINE FAILED OR MISSING"
+INCONCLUSIVE = "INCONCLUSIVE"
+
+EXIT_CODES = {
+    AGREES: ExitCode.AGREES,
+    CONSISTENT: ExitCode.AGREES,
+    DIFFERS: ExitCode.DIFFERS,
+    ENGINE_FAILED: ExitCode.ENGINE_FAILED,
+    INCONCLUSIVE: ExitCode.INCONCLUSIVE,
+}
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the whole comparison says."""
+
+    word: str  # a key of EXIT_CODES
+    sentence: str
+    next_step: str  # what to do now
+    seeds: int  # pairs of runs behind every check: the fewest of any pair of engines
+    seeds_needed: int | None  # for a statement of equivalence in every check; None: more than MOST_SEEDS, or no checks
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return EXIT_CODES[self.word]
+
+
+def decide(
+    engines: Sequence[str],
+    results: Sequence[CheckResult],
+    failures: dict[tuple[str, int], str],
+) -> Verdict:
+    """The verdict: a difference weighs more than an engine without result, and that more than an open question.
+
+    The smoke tier is a comparison of fewer seeds than a statement of equivalence needs: there, nothing outside the
+    alarm band is as much as can be said, and it is called CONSISTENT, never AGREES.
+    """
+    outcomes = [result.outcome for result in results]
+    seeds = min((len(result.seeds) for result in results), default=0)
+    needed = _most([result.seeds_needed for result in results])
+    smoke = bool(results) and (needed is None or seeds < needed)
+
+    if checks.DIFFERS in outcomes:
+        word, sentence, next_step = DIFFERS, *_differs(results)
+    elif failures:
+        word, sentence, next_step = ENGINE_FAILED, *_failed(failures)
+    elif not results:
+        word, sentence, next_step = INCONCLUSIVE, *_nothing_to_compare(engines)
+    elif checks.NOT_COMPARABLE in outcomes:
+        word, sentence, next_step = INCONCLUSIVE, *_not_comparable(results)
+    elif all(outcome == checks.AGREES for outcome in outcomes):
+        word, sentence, next_step = AGREES, *_agrees(engines, results, seeds)
+    elif smoke:
+        word, sentence, next_step = CONSISTENT, *_consistent(engines, seeds, needed)
+    else:
+        word, sentence, next_step = INCONCLUSIVE, *_unsettled(results, seeds)
+    return Verdict(word, sentence, next_step, seeds, needed)
+
+
+def seeds_text(seeds_needed: int | None) -> str:
+    return f"more than {MOST_SEEDS} seeds" if seeds_needed is None else plural(seeds_needed, "seed")
+
+
+def _most(needed: list[int | None]) -> int | None:
+    return None if not needed or None in needed else max(needed)
+
+
+def _differs(results) -> tuple[str, str]:
+    found = [result for result in results if result.outcome == checks.DIFFERS]
+    worst = max(found, key=lambda result: abs(result.difference) / result.alarm)
+    a, b = worst.pair
+    sentence = (
+        f"The engines differ in {len(found)} of {plural(len(results), 'check')}; most, against its scatter, in the "
+        f"{worst.check.quantity.title}: {a} {signed_difference(worst.check, worst.difference)} against {b}."
+    )
+    return sentence, "See the check table for what differs, then the displacement fields for where."
+
+
+def _failed(failures) -> tuple[str, str]:
+    (engine, seed), message = next(iter(sorted(failures.items())))
+    more = f" (and {plural(len(failures) - 1, 'more run')})" if len(failures) > 1 else ""
+    sentence = f"{engine}, seed {seed}, has no result: {message.rstrip('.')}{more}."
+    return sentence, "`crossdem doctor` shows which engines are here and what to install."
+
+
+def _nothing_to_compare(engines) -> tuple[str, str]:
+    if len(engines) < 2:
+        who = engines[0] if engines else "no engine"
+        return (
+            f"Only {who} has results: one engine alone says nothing about agreement.",
+            "Run the case with at least two engines.",
+        )
+    return (
+        "The case has no checks: nothing says when its engines would agree.",
+        "Add [[check]] tables.",
+    )
+
+
+def _not_comparable(results) -> tuple[str, str]:
+    first = next(result for result in results if result.outcome == checks.NOT_COMPARABLE)
+    sentence = f"Not comparable: {first.obstacles[0].rstrip('.')}."
+    return (
+        sentence,
+        "See the gates; a bed that does not rest usually does at a smaller time step (engines.NAME.step_s).",
+    )
+
+
+def _agrees(engines, results, seeds) -> tuple[str, str]:
+    checked = len({result.check.quantity.name for result in results})
+    sentence = (
+        f"{_names(engines)} agree: the 90 % interval of every difference in {plural(checked, 'quantity', 'quantities')} "
+        f"lies within its margin, from {plural(seeds, 'seed')}."
+    )
+    return sentence, "Vary the case (--set key=value) to see how far the agreement reaches."
+
+
+def _consistent(engines, seeds, needed) -> tuple[str, str]:
+    sentence = (
+        f"{_names(engines)} show no difference: every gate passed, and nothing lies outside the alarm band of "
+        f"{checks.ALARM_SCATTERS} seed-to-seed standard deviations. This is no statement of equivalence: "
+        f"it needs {seeds_text(needed)}, here {'is' if seeds == 1 else 'are'} {seeds}."
+    )
+    if needed is None:
+        return sentence, "Widen the margins that no reasonable number of seeds can meet."
+    return sentence, f"For a statement of equivalence run the same with --seeds {needed}."
+
+
+def _unsettled(results, seeds) -> tuple[str, str]:
+    open_ones = [result for result in results if result.outcome == checks.INCONCLUSIVE]
+    first = open_ones[0]
+    sentence = (
+        f"{plural(seeds, 'seed')} would show equal engines as equivalent, but {len(open_ones)} of "
+        f"{plural(len(results), 'check')} stay open; first {first.check.quantity.title} of {first.pair[0]} "
+        f"against {first.pair[1]}: {explanation(first)}."
+    )
+    return (
+        sentence,
+        "The differences are about as large as their margins: look at their cause, or run more seeds.",
+    )
+
+
+def _names(engines: Sequence[str]) -> str:
+    return " and ".join([", ".join(engines[:-1]), engines[-1]]) if len(engines) > 1 else engines[0]

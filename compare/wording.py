@@ -1,0 +1,117 @@
+"""Numbers as people read them, alike in the page, the tables, the terminal and the test report."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from . import checks
+from .checks import Check, CheckResult
+from .quantities import Quantity
+
+SHOWN_UNITS = {
+    "m": (1e3, "mm"),
+    "J": (1e3, "mJ"),
+}  # SI unit: factor and unit of a size that reads well
+MINUS = "\N{MINUS SIGN}"
+
+# Control characters, which neither XML nor a terminal may be given; and what is no character at all.
+UNPRINTABLE = re.compile("[^\t\n\r\u0020-\u007e\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def printable(text: str) -> str:
+    """Text of a case, dataset or engine, fit to be shown anywhere."""
+    return UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
+
+
+def plural(count: int, one: str, many: str | None = None) -> str:
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
+def number(value: float, digits: int = 3) -> str:
+    """`value` to `digits` significant digits, without exponent where it can be; a dash for NaN."""
+    if math.isnan(value):
+        return "\N{EN DASH}"
+    text = f"{value:#.{digits}g}"
+    text = f"{float(text):.0f}" if "e+0" in text and abs(value) < 1e6 else text.rstrip(".")
+    return text.replace("-", MINUS)
+
+
+def quantity_value(quantity: Quantity, value: float, digits: int = 3) -> str:
+    factor, unit = SHOWN_UNITS.get(quantity.unit, (1, quantity.unit))
+    return f"{number(factor * value, digits)} {unit}".rstrip()
+
+
+def with_scatter(mean: float, scatter: float | None) -> str:
+    """ "0.882 ± 0.046": the scatter to the digits of the mean; the mean alone where there is no scatter."""
+    shown = number(mean)
+    if scatter is None or math.isnan(scatter) or math.isnan(mean):
+        return shown
+    decimals = len(shown.partition(".")[2])
+    return f"{shown} ± {scatter:.{decimals}f}"
+
+
+def quantity_with_scatter(quantity: Quantity, mean: float, scatter: float | None) -> str:
+    factor, unit = SHOWN_UNITS.get(quantity.unit, (1, quantity.unit))
+    shown = with_scatter(factor * mean, None if scatter is None else factor * scatter)
+    return shown if math.isnan(mean) else f"{shown} {unit}".rstrip()
+
+
+def signed_difference(check: Check, difference: float) -> str:
+    """A difference on the check's scale, with its sign: "+4.1 %", "x 1.12", "-0.3 mm"."""
+    if math.isnan(difference):
+        return number(difference)
+    if check.kind == "ratio":
+        return f"\N{MULTIPLICATION SIGN} {math.exp(difference):.2f}"
+    if check.kind == "relative":
+        return f"{round(100 * difference, 1) + 0.0:+.1f} %".replace("-", MINUS)
+    sign = MINUS if difference < 0 else "+"
+    return f"{sign}{quantity_value(check.quantity, abs(difference), digits=2)}"
+
+
+def band(check: Check, half_width: float) -> str:
+    """A band about no difference, of a half width on the check's scale: "±10 %", "1/1.33 to 1.33"."""
+    if check.kind == "ratio":
+        factor = f"{math.exp(half_width):.2f}"
+        return f"1/{factor} to {factor}"
+    if check.kind == "relative":
+        return f"±{100 * half_width:.3g} %"
+    return f"±{quantity_value(check.quantity, half_width)}"
+
+
+def margin(check: Check) -> str:
+    return band(check, check.on_scale(check.margin))
+
+
+def interval(result: CheckResult) -> str:
+    """The 90 % interval of the mean difference; a dash where there are too few pairs for one."""
+    if result.interval is None or not all(map(math.isfinite, result.interval)):
+        return "\N{EN DASH}"
+    return " to ".join(signed_difference(result.check, end) for end in result.interval)
+
+
+def needed(result: CheckResult) -> str:
+    if result.seeds_needed is None:
+        return f"> {checks.MOST_SEEDS}"
+    return str(result.seeds_needed)
+
+
+def explanation(result: CheckResult) -> str:
+    """Why the outcome is what it is; no full stop."""
+    if result.outcome == checks.NOT_COMPARABLE:
+        return "; ".join(result.obstacles)
+    if result.alarmed:
+        shown = signed_difference(result.check, result.difference)
+        return (
+            f"the mean difference {shown} is outside the alarm band {band(result.check, result.alarm)} "
+            f"({checks.ALARM_SCATTERS} seed-to-seed standard deviations)"
+        )
+    if result.interval is None:
+        return f"one pair of runs gives no interval; equivalence needs {needed(result)} seeds"
+    where = f"the 90 % interval {interval(result)}"
+    limits = f"the margin {margin(result.check)}"
+    if result.outcome == checks.AGREES:
+        return f"{where} lies within {limits}"
+    if result.outcome == checks.DIFFERS:
+        return f"{where} lies wholly outside {limits}"
+    return f"{where} reaches beyond {limits}; equivalence needs {needed(result)} seeds"

@@ -1,0 +1,49 @@
+"""The paper's bed, and the bar's first centimetre in it, through every engine."""
+
+import pytest
+from small_case import REFERENCE_CASE
+
+from crossdem.adapters.case import load_case
+from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.packing import make_packing
+from crossdem.adapters.run import RunRequest, run_all
+
+# Wide: one bed, and not a thousandth of a second in which it would be the same in two codes. For the mean of
+# the last two thirds of the first centimetre, where the three codes give about 0.11 N on this bed.
+LEAST_RESISTANCE_N, LARGEST_RESISTANCE_N = 0.05, 0.2
+
+
+@pytest.fixture(scope="module")
+def case():
+    return load_case(REFERENCE_CASE, ["time.penetration_s=1.0"])
+
+
+@pytest.fixture(scope="module")
+def packing(case, tmp_path_factory):
+    return make_packing(case, 1, tmp_path_factory.mktemp("packing") / "seed1")
+
+
+def test_a_bar_goes_in_by_one_centimetre(engine, case, packing, tmp_path):
+    names = dict.fromkeys(["native", engine.name])  # native too: the gates refer to it
+    requests = [RunRequest(case, packing, name) for name in names]
+    result = run_all(requests, tmp_path, 1)[-1]
+    assert result.status == "done", result.failure
+    run = Dataset.read(result.dataset_folder)
+
+    assert len(run.manifest["gates"]) == 3
+    assert [gate["message"] for gate in run.manifest["gates"] if not gate["passed"]] == []
+    table = run.resistance
+    assert (len(table), len(run.motion.time_s)) == (101, 11)
+    assert table["depth_m"].iloc[-1] == pytest.approx(0.01)
+    resistance_N = table["force_y_N"][table["depth_m"] >= 0.01 / 3].mean()
+    assert LEAST_RESISTANCE_N < resistance_N < LARGEST_RESISTANCE_N
+    assert table["contacts"].between(1550, 1800).all()
+    assert table["kinetic_energy_J"].max() < 1e-3
+    assert table["tip_force_y_N"].mean() > 5 * abs(table["shaft_force_y_N"].mean())
+
+    start_m, end_m = run.motion.position_m[0], run.motion.position_m[-1]
+    under_bar = abs(start_m[:, 0] - 0.075) < 0.004
+    near_tip = under_bar & (start_m[:, 1] > run.motion.bar_tip_m[0] - 0.015)
+    assert near_tip.sum() >= 3
+    assert (end_m - start_m)[near_tip, 1].mean() < -0.002  # they make way, mostly downwards
+    assert abs(end_m - start_m)[start_m[:, 1] < 0.02].max() < 0.002  # the bottom hardly notices

@@ -1,0 +1,177 @@
+"""The report: complete, self-contained, and inert whatever a case or a dataset calls itself."""
+
+import json
+import re
+from html.parser import HTMLParser
+from io import StringIO
+from xml.etree import ElementTree
+
+import pytest
+import synthetic
+from rich.console import Console
+
+from crossdem.compare import quantities, report, summary
+from crossdem.compare.colours import engine_styles
+from crossdem.compare.comparison import compare_runs
+
+HOSTILE = "<script>alert('1')</script> \"q\" & | `土のモデル` [bold]$x_1$\x07"
+ENGINES = ("native", "liggghts", "yade")
+
+
+class Page(HTMLParser):
+    """What a browser would take for elements, attributes and text."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.attributes, self.text = [], [], ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += attrs
+
+    def handle_data(self, data):
+        self.text += data
+
+
+def compared(title="A title", engines=ENGINES, failures=None, **options):
+    run_case = synthetic.case(title=title)
+    runs = [
+        synthetic.dataset(run_case, engine, seed, noise=0.3, **options)
+        for engine in engines
+        for seed in (1, 2)
+    ]
+    return compare_runs(run_case, runs, failures)
+
+
+def written(comparison, folder):
+    page = report.write_report(comparison, folder)
+    return page.read_text(encoding="utf-8"), (folder / "report.md").read_text(encoding="utf-8")
+
+
+def test_the_four_files_are_written_and_nothing_else(tmp_path):
+    assert report.write_report(compared(), tmp_path / "new") == tmp_path / "new" / "report.html"
+    names = {path.name for path in (tmp_path / "new").iterdir()}
+    assert names == {"report.html", "report.md", "report.json", "junit.xml"}
+
+
+def test_the_page_says_the_verdict_first_and_shows_every_part(tmp_path):
+    html, markdown = written(compared(), tmp_path)
+    assert html.index("CONSISTENT") < html.index("Resistance against depth")
+    for heading in (
+        "Resistance against depth",
+        "Displacement fields",
+        "The bed and its layers",
+        "Surface, and movement near the bar",
+        "Checks",
+        "Gates",
+        "What each engine cannot express",
+        "Provenance",
+    ):
+        assert f"<h2>{heading}</h2>" in html
+    assert html.count('<svg class="bed"') == 4 * len(ENGINES)
+    assert markdown.startswith("# CONSISTENT: A title")
+    assert synthetic.MEAN_RESISTANCE["reason"] in html and "±10 %" in html.replace("\xa0", " ")
+
+
+def test_the_page_loads_and_runs_nothing(tmp_path):
+    html, _ = written(compared(), tmp_path)
+    page = Page(html)
+    assert (
+        "content",
+        "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'",
+    ) in page.attributes
+    assert not {"script", "img", "link", "iframe", "object", "image", "a"} & set(page.tags)
+    for name, value in page.attributes:
+        assert not name.startswith("on")
+        if name in ("href", "xlink:href", "src"):
+            assert value.startswith("#")
+    assert "@import" not in html and not re.search(r"url\((?!#)", html)
+
+
+def test_a_hostile_title_stays_text(tmp_path):
+    html, markdown = written(compared(HOSTILE), tmp_path)
+    page = Page(html)
+    assert "script" not in page.tags
+    assert HOSTILE.replace("\x07", "\N{REPLACEMENT CHARACTER}") in page.text
+    assert "<script" not in markdown and "\\|" in markdown and "土のモデル" in markdown
+    assert json.loads((tmp_path / "report.json").read_text())["case"]["title"] == HOSTILE
+
+
+def test_hostile_engines_and_messages_stay_text(tmp_path):
+    engine = "<img src=x onerror=1>$a_b$"
+    comparison = compared(
+        engines=("native", engine),
+        failures={("yade", 1): f"said: {HOSTILE} \x00"},
+        failed_gate=HOSTILE,
+    )
+    html, markdown = written(comparison, tmp_path)
+    assert not {"script", "img"} & set(Page(html).tags)
+    assert "<img" not in markdown and "<script" not in markdown
+    ElementTree.parse(tmp_path / "junit.xml")
+
+
+def test_the_record_is_strict_json_with_all_checks_and_values(tmp_path):
+    comparison = compared()
+    report.write_report(comparison, tmp_path)
+
+    def refuse(constant):
+        raise AssertionError(constant)
+
+    record = json.loads((tmp_path / "report.json").read_text(), parse_constant=refuse)
+    assert record["verdict"]["word"] == "CONSISTENT" and record["verdict"]["exit_code"] == 0
+    assert len(record["checks"]) == len(comparison.results) == 3
+    assert len(record["runs"]) == 6
+    assert set(record["runs"][0]["values"]) == set(quantities.QUANTITIES)
+    assert record["case"]["hash"] == comparison.case.hash
+
+
+def test_the_test_report_has_a_test_per_run_gate_and_check_and_passes_only_agreement(tmp_path):
+    failures = {("yade", 1): "lost 3 particles"}
+    comparison = compared(engines=("native", "liggghts"), failures=failures)
+    report.write_report(comparison, tmp_path)
+    suites = {
+        suite.get("name"): suite for suite in ElementTree.parse(tmp_path / "junit.xml").getroot()
+    }
+    assert [len(suites[name]) for name in ("verdict", "runs", "gates", "checks")] == [1, 5, 4, 3]
+    assert suites["verdict"].get("failures") == "1"
+    assert suites["runs"].get("errors") == "1"
+    checks = {test.get("classname"): test for test in suites["checks"]}
+    assert checks["checks.liggghts against native"].find("skipped") is not None
+    assert checks["checks.yade against native"].find("error") is not None
+
+
+def test_a_comparison_without_any_run_still_has_a_report(tmp_path):
+    failures = {(engine, 1): f"{engine} is not installed" for engine in ENGINES}
+    html, markdown = written(compare_runs(synthetic.case(), [], failures), tmp_path)
+    assert "ENGINE FAILED OR MISSING" in html and "yade is not installed" in html
+    assert "ENGINE FAILED OR MISSING" in markdown
+
+
+def test_a_report_that_cannot_be_finished_leaves_the_one_before(tmp_path, monkeypatch):
+    before, _ = written(compared(), tmp_path)
+
+    def full(_):
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(report.os, "fsync", full)
+    with pytest.raises(OSError):
+        report.write_report(compared("Another title"), tmp_path)
+    assert (tmp_path / "report.html").read_text(encoding="utf-8") == before
+
+
+def test_each_engine_has_a_colour_of_its_own_the_same_in_any_company():
+    styles = engine_styles(["native", "liggghts", "yade", "lammps", "esys"])
+    assert len({style.colour for style in styles.values()}) == 5
+    assert engine_styles(["yade"])["yade"] == styles["yade"]
+
+
+def test_the_terminal_shows_verdict_values_and_path_and_takes_no_text_for_markup(tmp_path):
+    text = StringIO()
+    comparison = compared(failures={("yade", 3): "[bold]died[/bold]\x1b[2J"})
+    summary.print_summary(comparison, tmp_path / "report.html", Console(file=text, width=100))
+    shown = text.getvalue()
+    assert "ENGINE FAILED OR MISSING" in shown
+    assert "[bold]died[/bold]" in shown and "\x1b" not in shown
+    assert "mean resistance" in shown
+    assert str(tmp_path / "report.html") in shown

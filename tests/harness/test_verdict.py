@@ -1,0 +1,123 @@
+"""The verdict: which of several findings wins, and what it takes to say AGREES."""
+
+import pytest
+import synthetic
+
+from crossdem import ExitCode
+from crossdem.compare import checks, verdict
+from crossdem.compare.comparison import ComparisonError, compare_runs
+
+ENGINES = ("native", "liggghts", "yade")
+RUN_CASE = synthetic.case()
+NOT_AT_REST = "the bed does not rest at this time step (2e-4 J)"
+
+
+def runs(seeds=2, factors=(1.0, 1.0, 1.0), noise=0.0, engines=ENGINES):
+    return [
+        synthetic.dataset(RUN_CASE, engine, seed, factor=factor, noise=noise)
+        for engine, factor in zip(engines, factors)
+        for seed in range(1, seeds + 1)
+    ]
+
+
+def test_identical_runs_agree():
+    comparison = compare_runs(RUN_CASE, runs())
+    assert comparison.verdict.word == verdict.AGREES
+    assert comparison.verdict.exit_code == ExitCode.AGREES
+    assert "native, liggghts and yade agree" in comparison.verdict.sentence
+
+
+def test_two_noisy_seeds_are_consistent_and_it_says_how_many_seeds_a_statement_needs():
+    said = compare_runs(RUN_CASE, runs(noise=0.3)).verdict
+    assert (said.word, said.exit_code) == (verdict.CONSISTENT, ExitCode.AGREES)
+    assert (said.seeds, said.seeds_needed) == (2, 16)
+    assert "no statement of equivalence" in said.sentence and "16 seeds" in said.sentence
+    assert "--seeds 16" in said.next_step
+
+
+def test_a_shifted_resistance_differs():
+    said = compare_runs(RUN_CASE, runs(factors=(1, 1, 1.6), noise=0.3)).verdict
+    assert (said.word, said.exit_code) == (verdict.DIFFERS, ExitCode.DIFFERS)
+    assert "in 2 of 3 checks" in said.sentence
+    assert "mean resistance: yade +" in said.sentence
+
+
+def test_enough_seeds_that_settle_nothing_are_inconclusive():
+    shifted = runs(seeds=16, factors=(1, 1.1, 1), noise=0.05)
+    said = compare_runs(RUN_CASE, shifted).verdict
+    assert (said.word, said.exit_code) == (verdict.INCONCLUSIVE, ExitCode.INCONCLUSIVE)
+
+
+def test_a_failed_gate_is_inconclusive_whatever_the_numbers_say():
+    agitated = synthetic.dataset(RUN_CASE, "yade", 1, factor=5, failed_gate=NOT_AT_REST)
+    comparison = compare_runs(RUN_CASE, [*runs(1, engines=ENGINES[:2]), agitated])
+    said = comparison.verdict
+    assert (said.word, said.exit_code) == (verdict.INCONCLUSIVE, ExitCode.INCONCLUSIVE)
+    assert said.sentence == f"Not comparable: yade, seed 1: {NOT_AT_REST}."
+    outcomes = {result.pair: result.outcome for result in comparison.results}
+    assert outcomes[("yade", "native")] == outcomes[("yade", "liggghts")] == checks.NOT_COMPARABLE
+    assert outcomes[("liggghts", "native")] != checks.NOT_COMPARABLE
+
+
+def test_a_missing_engine_is_never_agreement():
+    failures = {("yade", seed): "yade is not installed: apt install yade" for seed in (1, 2)}
+    comparison = compare_runs(RUN_CASE, runs(engines=ENGINES[:2]), failures)
+    said = comparison.verdict
+    assert (said.word, said.exit_code) == (verdict.ENGINE_FAILED, ExitCode.ENGINE_FAILED)
+    assert "apt install yade" in said.sentence and "1 more run" in said.sentence
+    assert comparison.engines == ENGINES
+
+
+def test_one_failed_run_keeps_its_pairs_from_being_compared():
+    failures = {("liggghts", 2): "ended with status 1 while resting"}
+    present = [run for run in runs() if (run.engine, run.seed) != ("liggghts", 2)]
+    comparison = compare_runs(RUN_CASE, present, failures)
+    outcomes = {result.pair: result.outcome for result in comparison.results}
+    assert outcomes[("liggghts", "native")] == checks.NOT_COMPARABLE
+    assert outcomes[("yade", "native")] == checks.AGREES
+
+
+def test_a_run_that_was_never_asked_for_keeps_its_pairs_from_being_compared():
+    present = [run for run in runs() if (run.engine, run.seed) != ("liggghts", 2)]
+    said = compare_runs(RUN_CASE, present).verdict
+    assert said.word == verdict.INCONCLUSIVE
+    assert "liggghts, seed 2: not run" in said.sentence
+
+
+def test_a_difference_wins_over_a_failure_and_a_failure_over_an_open_question():
+    failures = {("yade", 1): "lost 3 particles"}
+    different = runs(1, factors=(1, 2), engines=ENGINES[:2])
+    assert compare_runs(RUN_CASE, different, failures).verdict.exit_code == ExitCode.DIFFERS
+    alone = runs(1, engines=ENGINES[:1])
+    assert compare_runs(RUN_CASE, alone, failures).verdict.exit_code == ExitCode.ENGINE_FAILED
+    assert compare_runs(RUN_CASE, alone).verdict.exit_code == ExitCode.INCONCLUSIVE
+
+
+def test_one_engine_alone_is_inconclusive():
+    said = compare_runs(RUN_CASE, runs(engines=ENGINES[:1])).verdict
+    assert said.word == verdict.INCONCLUSIVE
+    assert "Only native" in said.sentence
+
+
+def test_a_case_without_checks_is_inconclusive():
+    bare = synthetic.case(checks=[])
+    said = compare_runs(bare, [synthetic.dataset(bare, engine) for engine in ENGINES]).verdict
+    assert said.word == verdict.INCONCLUSIVE
+    assert "no checks" in said.sentence
+
+
+def test_runs_from_different_packings_are_not_comparable():
+    other = synthetic.dataset(RUN_CASE, "yade", packing_hash="0" * 64)
+    comparison = compare_runs(RUN_CASE, [synthetic.dataset(RUN_CASE), other])
+    assert comparison.verdict.word == verdict.INCONCLUSIVE
+    assert "did not start from the same packing" in comparison.verdict.sentence
+
+
+def test_what_is_no_comparison_is_refused_with_every_fault():
+    other_case = synthetic.case(gravity_m_s2=1.62)
+    wrong = [*runs(1), synthetic.dataset(RUN_CASE), synthetic.dataset(other_case, "esys")]
+    with pytest.raises(ComparisonError) as refused:
+        compare_runs(RUN_CASE, wrong)
+    assert len(refused.value.faults) == 2
+    assert "native, seed 1: given 2 times" in refused.value.faults
+    assert any("run of another case" in fault for fault in refused.value.faults)
