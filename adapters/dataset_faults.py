@@ -161,11 +161,19 @@ def _value_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]
         yield "contacts is not a count"
     if (resistance["kinetic_energy_J"] < 0).any():
         yield "a kinetic energy is negative"
-    yield from _lost_particles(case, motion)
+    for what, where in lost_particles(case, motion).items():
+        if where.any():
+            lost = np.flatnonzero(where.any(axis=0))
+            first_s = motion.time_s[np.flatnonzero(where.any(axis=1))[0]]
+            first_ids = ", ".join(map(str, lost[:5]))
+            yield f"lost {len(lost)} particles, found {what} from {first_s:.6g} s on (first ids {first_ids})"
 
 
-def _lost_particles(case, motion: Motion) -> Iterator[str]:
-    """A particle with its centre beyond a face of wall or bar has gone through: no contact brings it back."""
+def lost_particles(case: dict, motion: Motion) -> dict[str, np.ndarray]:
+    """(F, N) which particles are where they must not be, by where that is.
+
+    One with its centre beyond a face of wall or bar has gone through: no contact brings it back.
+    """
     x_m, y_m = motion.position_m[..., 0], motion.position_m[..., 1]
     outside = (x_m < 0) | (x_m > case["container"]["width_m"]) | (y_m < 0)
     bar = case["bar"]
@@ -175,9 +183,4 @@ def _lost_particles(case, motion: Motion) -> Iterator[str]:
         & (y_m > tip_m)
         & (y_m < tip_m + bar["length_m"])
     )
-    for what, where in (("outside the container", outside), ("inside the bar", in_bar)):
-        if where.any():
-            lost = np.flatnonzero(where.any(axis=0))
-            first_s = motion.time_s[np.flatnonzero(where.any(axis=1))[0]]
-            first_ids = ", ".join(map(str, lost[:5]))
-            yield f"lost {len(lost)} particles, found {what} from {first_s:.6g} s on (first ids {first_ids})"
+    return {"outside the container": outside, "inside the bar": in_bar}

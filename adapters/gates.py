@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from .dataset import Dataset
+from .dataset_faults import lost_particles
 
 
 def with_gates(dataset: Dataset, native_contacts: int | None) -> Dataset:
@@ -19,8 +22,7 @@ def with_gates(dataset: Dataset, native_contacts: int | None) -> Dataset:
     if native_contacts is not None:
         contacts = int(at_rest["contacts"])
         gates.append(_contacts(contacts, native_contacts, limits["contacts_share"]))
-    # A dataset with a particle lost cannot be constructed; the gate says that it was looked at.
-    gates.append(_gate("no_particle_lost", 0, 0, True, "every particle stayed in the container"))
+    gates.append(_no_particle_lost(dataset))
     return replace(dataset, manifest=dataset.manifest | {"gates": gates})
 
 
@@ -37,6 +39,14 @@ def _contacts(contacts: int, native_contacts: int, limit: float) -> dict:
     said = "the bed is the same" if passed else "not comparable: the rested bed is another one"
     numbers = f"{contacts} contacts, {native_contacts} in the native run; allowed to differ by {100 * limit:.3g} %"
     return _gate("contacts_share", difference, limit, passed, f"{said} ({numbers})")
+
+
+def _no_particle_lost(dataset: Dataset) -> dict:
+    """Counted anew, though a Dataset refuses lost particles: the report shows what was found, not what is expected."""
+    beyond = np.any(list(lost_particles(dataset.case, dataset.motion).values()), axis=(0, 1))
+    lost = int(np.count_nonzero(beyond))
+    said = "every particle stayed in the container" if lost == 0 else f"not comparable: {lost} lost"
+    return _gate("no_particle_lost", lost, 0, lost == 0, said)
 
 
 def _gate(name: str, value: float, limit: float, passed: bool, message: str) -> dict:

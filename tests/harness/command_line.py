@@ -8,7 +8,7 @@ ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "reference_cases" / "bar_penetration.toml"
 
 
-def crossdem(*arguments, cwd=None, **environment):
+def crossdem(*arguments, cwd=None, timeout=240, **environment):
     """Runs ./crossdem to its end; text of both streams and the exit code in the result."""
     return subprocess.run(
         [ROOT / "crossdem", *arguments],
@@ -16,5 +16,5 @@ def crossdem(*arguments, cwd=None, **environment):
         env={**os.environ, **environment},
         capture_output=True,
         text=True,
-        timeout=240,
+        timeout=timeout,
     )

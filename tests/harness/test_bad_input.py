@@ -42,7 +42,8 @@ def test_every_fault_is_told_in_one_go_with_file_and_key_path(refused, write):
     case_file = write()
     text = case_file.read_text()
     text = text.replace("speed_m_s = 0.01", "speed_m_s = -0.01").replace("count = 944", "count = 0")
-    case_file.write_text(text.replace("friction = 0.75", 'friction = "rough"') + "extra = 1\n")
+    text = text.replace("[marks]", "[marks]\nextra = 1")
+    case_file.write_text(text.replace("friction = 0.75", 'friction = "rough"'))
     said = refused(case_file).splitlines()
     keys = {line.removeprefix(f"{case_file}: ").split(":")[0] for line in said}
     assert keys >= {
@@ -143,7 +144,9 @@ def test_invalid_utf_8_is_told_with_line_and_column(refused, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["x = " + "[" * 10_000, "x = " + "9" * 10_000, "a." * 9_000 + "a=1"]
+    "text",
+    ["x = " + "[" * 10_000, "x = " + "9" * 10_000, "a." * 9_000 + "a=1"],
+    ids=["nested", "digits", "dotted"],
 )
 def test_hostile_text_is_refused_in_a_sentence(refused, tmp_path, text):
     case_file = tmp_path / "case.toml"

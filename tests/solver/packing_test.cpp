@@ -1,0 +1,192 @@
+// Settled beds: made from a seed, written, and read back with suspicion.
+
+#include "crossdem/packing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "small_case.hpp"
+#include "text_file.hpp"
+
+namespace crossdem::test {
+namespace {
+
+Case few() { return small_case({{"particles", {{"count", 60}}}}); }
+
+TEST(Packing, EqualSeedsGiveEqualBitsAndOthersAnotherBed) {
+  const Packing first = make_packing(few(), 1);
+  const Packing again = make_packing(few(), 1);
+  const Packing other = make_packing(few(), 2);
+  EXPECT_EQ(first.position, again.position);
+  EXPECT_EQ(first.radius, again.radius);
+  EXPECT_EQ(first.bar_tip, again.bar_tip);
+  EXPECT_NE(first.position, other.position);
+  EXPECT_NE(first.radius, other.radius);
+  EXPECT_EQ(first.seed, 1U);
+  EXPECT_EQ(other.seed, 2U);
+}
+
+TEST(Packing, HoldsTheMixOfTheCaseAtRestInTheContainer) {
+  const Case c = small_case({{"particles", {{"count", 61}, {"number_shares", {0.25, 0.75}}}}});
+  const Packing bed = make_packing(c, 5);
+  EXPECT_EQ(std::count(bed.radius.begin(), bed.radius.end(), small_radius), 15);
+  EXPECT_EQ(std::count(bed.radius.begin(), bed.radius.end(), large_radius), 46);
+  EXPECT_LT(bed.kinetic_energy, 1e-9);
+  EXPECT_GE(bed.settling, 0.3);
+  double top = 0.0;
+  for (std::size_t i = 0; i < bed.radius.size(); ++i) {
+    EXPECT_GT(bed.position[i].x(), 0.9 * bed.radius[i]);  // no more than its weight's overlap in the walls
+    EXPECT_LT(bed.position[i].x(), 0.06 - 0.9 * bed.radius[i]);
+    EXPECT_GT(bed.position[i].y(), 0.8 * bed.radius[i]);
+    top = std::max(top, bed.position[i].y() + bed.radius[i]);
+  }
+  EXPECT_EQ(bed.bed_height, top);
+  EXPECT_GT(bed.contacts, 60U);
+  const Particles resting = at_rest(bed, c);
+  EXPECT_EQ(kinetic_energy(resting), 0.0);
+  EXPECT_EQ(resting.position, bed.position);
+}
+
+/// Settled for one look of 100 steps only, without weight: what is seen is the lattice.
+TEST(Packing, TheLatticeStartsWithoutOverlap) {
+  const Case c = small_case(
+      {{"gravity_m_s2", 0.0},
+       {"packing", {{"settling_s", 0.0}, {"velocity_m_s", 0.0}, {"jitter_m", 0.0002}, {"kinetic_energy_J", 1.0}}}});
+  const Packing lattice = make_packing(c, 1);
+  EXPECT_EQ(lattice.contacts, 0U);
+  double largest_shift = 0.0;
+  for (const Vector2& at : lattice.position) {
+    EXPECT_GE(at.x(), large_radius);
+    EXPECT_LE(at.x(), 0.06 - large_radius);
+    EXPECT_GE(at.y(), large_radius);
+    const double row = (at.y() - 0.0027) / 0.0054;
+    largest_shift = std::max(largest_shift, std::abs(row - std::round(row)) * 0.0054);
+  }
+  EXPECT_GT(largest_shift, 0.00015);
+  EXPECT_LE(largest_shift, 0.0002 + 1e-12);
+}
+
+TEST(Packing, ABedThatDoesNotSettleIsAnError) {
+  const Case restless =
+      small_case({{"particles", {{"count", 60}}}, {"packing", {{"settling_s", 0.01}, {"longest_settling_s", 0.02}}}});
+  const auto message = message_of<SimulationError>([&] { make_packing(restless, 9); });
+  ASSERT_TRUE(message.has_value());
+  EXPECT_NE(message->find("the bed of seed 9 did not settle"), std::string::npos) << *message;
+}
+
+TEST(Packing, ABedHigherThanTheContainerIsBadInput) {
+  Case low = few();
+  low.container.height = 0.015;
+  const auto message = message_of<CaseError>([&] { make_packing(low, 1); });
+  ASSERT_TRUE(message.has_value());
+  EXPECT_EQ(message->rfind("particles.count: the bed does not fit: settled it is 0.02", 0), 0U) << *message;
+}
+
+TEST(Packing, TheBarTouchesTheTopmostParticleUnderIt) {
+  const BarGeometry bar{.width = 0.01, .length = 0.15, .centre_x = 0.03, .speed = 0.01};  // 0.025 to 0.035
+  const std::vector<double> radius{0.0025, 0.002, 0.002};
+  EXPECT_NEAR(touching_height(bar, radius, {{0.03, 0.05}, {0.026, 0.0504}, {0.01, 0.1}}), 0.0525, 1e-16);
+  // Beside the bar by 1.5 mm: only its left lower part is under the corner, sqrt(2.5^2 - 1.5^2) = 2 mm above the
+  // centre.
+  EXPECT_NEAR(touching_height(bar, {0.0025}, {{0.0235, 0.05}}), 0.052, 1e-15);
+  EXPECT_NEAR(touching_height(bar, {0.0025}, {{0.0365, 0.05}}), 0.052, 1e-15);
+  EXPECT_EQ(touching_height(bar, {0.0025}, {{0.0224, 0.05}}), 0.0) << "beside it altogether";
+}
+
+/// A written packing of 60 particles, to be spoilt.
+class PackingFile : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { bed = make_packing(few(), 3); }
+  void SetUp() override { write_packing(bed, folder.path()); }
+
+  /// Replaces line `number` (1 is the header) of packing.csv; empty text removes it.
+  void spoil(std::size_t number, const std::string& text) const {
+    std::vector<std::string> lines = lines_of(csv());
+    lines.at(number - 1) = text;
+    std::ofstream out(csv());
+    for (const std::string& line : lines)
+      if (!line.empty()) out << line << "\n";
+  }
+  void expect_refused(const std::string& part) const {
+    const auto message = message_of<CaseError>([&] { read_packing(csv(), few()); });
+    ASSERT_TRUE(message.has_value());
+    EXPECT_NE(message->find(part), std::string::npos) << *message;
+  }
+  [[nodiscard]] std::filesystem::path csv() const { return folder / "packing.csv"; }
+
+  inline static Packing bed;
+  TemporaryFolder folder;
+};
+
+TEST_F(PackingFile, IsReadBackBitForBit) {
+  const Packing read = read_packing(csv(), few());
+  EXPECT_EQ(read.position, bed.position);
+  EXPECT_EQ(read.radius, bed.radius);
+  EXPECT_EQ(read.bar_tip, bed.bar_tip);
+  EXPECT_EQ(read.seed, 3U);
+  EXPECT_EQ(read.contacts, bed.contacts);
+  EXPECT_EQ(read.kinetic_energy, bed.kinetic_energy);
+  EXPECT_EQ(read.bed_height, bed.bed_height);
+  EXPECT_EQ(read.settling, bed.settling);
+  EXPECT_EQ(lines_of(csv())[0], "id,x_m,y_m,radius_m");
+}
+
+TEST_F(PackingFile, RefusesAnotherHeader) {
+  spoil(1, "id,x,y,r");
+  expect_refused("the first line must be id,x_m,y_m,radius_m");
+}
+
+TEST_F(PackingFile, RefusesRowsThatAreNotFourFiniteNumbers) {
+  for (const char* row :
+       {"1,0.01,0.02", "1,0.01,0.02,0.002,7", "1,0.01,x,0.002", "1,nan,0.02,0.002", "1,0.01,inf,0.002",
+        "1,0.01,0.02,0.002 ", "one,0.01,0.02,0.002", "1;0.01;0.02;0.002", "7,0.01,0.02,0.002"}) {
+    write_packing(bed, folder.path());
+    spoil(3, row);
+    expect_refused("packing.csv: line 3: must be particle 1 as four finite numbers");
+  }
+}
+
+TEST_F(PackingFile, RefusesRadiiThatTheCaseDoesNotHave) {
+  spoil(3, "1,0.01,0.02,0.00201");
+  expect_refused("line 3: no particle of the case has the radius 0.00201");
+}
+
+TEST_F(PackingFile, RefusesParticlesOutsideTheContainer) {
+  for (const char* row : {"1,-0.001,0.02,0.002", "1,0.0601,0.02,0.002", "1,0.01,-0.001,0.002"}) {
+    write_packing(bed, folder.path());
+    spoil(3, row);
+    expect_refused("line 3: the particle is outside the container");
+  }
+}
+
+TEST_F(PackingFile, RefusesAnotherNumberOfParticles) {
+  spoil(61, "");
+  expect_refused("packing.csv: holds 59 particles, the case 60");
+}
+
+TEST_F(PackingFile, RefusesFactsThatAreMissingOrBroken) {
+  for (const char* facts : {"{", "{}", R"({"seed": "one"})"}) {
+    std::ofstream(folder / "packing.json") << facts;
+    expect_refused("packing.json: ");
+  }
+  std::filesystem::remove(folder / "packing.json");
+  EXPECT_THROW(read_packing(csv(), few()), FileError);
+}
+
+TEST_F(PackingFile, RefusesAPenetrationThroughTheFloor) {
+  Case deep = few();
+  deep.time.penetration = 100 * bed.bar_tip;  // at 0.01 m/s
+  const auto message = message_of<CaseError>([&] { read_packing(csv(), deep); });
+  ASSERT_TRUE(message.has_value());
+  EXPECT_EQ(message->rfind("time.penetration_s: the bar starts at ", 0), 0U) << *message;
+}
+
+TEST_F(PackingFile, AFileThatIsNotThereIsAFileError) {
+  EXPECT_THROW(read_packing(folder / "none.csv", few()), FileError);
+  EXPECT_THROW(read_packing(folder.path(), few()), FileError);
+}
+
+}  // namespace
+}  // namespace crossdem::test

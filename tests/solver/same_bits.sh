@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# usage: same_bits.sh SOLVER SOURCE_DIR WORK_DIR
+# Compiles the solver with g++ -O0 and with clang++ -O2, settles and runs a small bed with each and with SOLVER (g++ -O3
+# in a release build), and compares what they wrote, bit for bit.
+set -euo pipefail
+own_solver=$1 source_dir=$2 work_dir=$3
+small_bed=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/small_bed.json
+rm -rf "$work_dir"
+mkdir -p "$work_dir"
+
+# hash_results NAME SOLVER: what this solver writes, as hashes in NAME.sha256
+hash_results() {
+  local results=$work_dir/$1
+  mkdir -p "$results"
+  "$2" pack "$small_bed" --seed 1 --output "$results/packing"
+  "$2" run "$small_bed" --packing "$results/packing/packing.csv" --output "$results/run"
+  (cd "$results" && sha256sum packing/packing.csv packing/packing.json run/resistance.csv run/ledger.csv) \
+    >"$work_dir/$1.sha256"
+}
+
+# compile_and_hash NAME COMPILER FLAGS
+compile_and_hash() {
+  local build=$work_dir/build_$1
+  cmake -S "$source_dir" -B "$build" -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER="$2" \
+    -DCMAKE_CXX_FLAGS="$3" >"$build.log"
+  cmake --build "$build" --target crossdem-solver >>"$build.log" 2>&1 || { cat "$build.log" >&2 && return 1; }
+  hash_results "$1" "$build/solver/crossdem-solver"
+}
+
+compile_and_hash g++_-O0 g++ -O0 &
+compile_and_hash clang++_-O2 clang++ -O2
+wait $!
+hash_results this_build "$own_solver"
+"$own_solver" --version
+for name in g++_-O0 clang++_-O2; do
+  diff "$work_dir/this_build.sha256" "$work_dir/$name.sha256" || { echo "this build and $name differ" >&2 && exit 1; }
+done
+echo "the same bits from this build, g++ -O0 and clang++ -O2"
