@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes a Debian machine ready: installs what scripts/packages.txt lists and is missing, then builds.
-# usage: scripts/setup.sh "SECTION..." PRESET...      sections of packages.txt, besides [engines]; CMake presets
+# usage: scripts/setup.sh "SECTION..." PRESET[:TARGET]...
+# Sections of packages.txt, besides [engines]; CMake presets, each with the one target to build (default: all).
 # A second time it neither installs nor rebuilds. Output of apt and the compiler goes to build/setup.log.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -75,8 +76,10 @@ else
   say "not a Debian system: install the like of what scripts/packages.txt lists by hand" >&2
 fi
 shift
-for preset in "$@"; do
+for wanted in "$@"; do
+  IFS=: read -r preset target <<<"$wanted:all"
+  target=${target%%:*}
   logged "configuring build/$preset" cmake --preset "$preset"
   logged "building build/$preset (a minute or two the first time)" \
-    cmake --build "build/$preset" --parallel "$(nproc)"
+    cmake --build "build/$preset" --parallel "$(nproc)" --target "$target"
 done
