@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -52,9 +52,14 @@ class Case:
         return cls(resolved, text.encode())
 
 
-def load_case(path: Path | str, overrides: Sequence[str] = ()) -> Case:
+def load_case(
+    path: Path | str,
+    overrides: Sequence[str] = (),
+    further_faults: Callable[[dict], list[str]] = lambda raw: [],
+) -> Case:
     """Reads a case file, applies `key.path=value` overrides and has the solver validate the whole.
 
+    `further_faults` tells what the solver cannot know: fault lines of the case as it was read, whatever that holds.
     Raises CaseError with every fault there is to tell, SolverError where there is no solver to ask.
     """
     try:
@@ -69,7 +74,14 @@ def load_case(path: Path | str, overrides: Sequence[str] = ()) -> Case:
             faults.append(f"--set {override}: {error}")
     if faults:
         raise CaseError(faults)
-    return _resolve(raw, str(path))
+    further = [f"{path}: {fault}" for fault in further_faults(raw)]
+    try:
+        case = _resolve(raw, str(path))
+    except CaseError as error:
+        raise CaseError(error.faults + further) from error
+    if further:
+        raise CaseError(further)
+    return case
 
 
 def _resolve(raw: dict, file_name: str) -> Case:

@@ -8,6 +8,22 @@ from .yade import Yade
 ENGINES: dict[str, Engine] = {engine.name: engine for engine in (Native(), Liggghts(), Yade())}
 
 
+def unknown_engines(case: dict) -> list[str]:
+    """A fault line for each table of `engines` that no engine would read; the rest is the schema's."""
+    named = case.get("engines", {})
+    others = [name for name in ENGINES if name != "native"]
+    return [
+        f"engines.{name}: "
+        + (
+            "its time step is time.step_s"
+            if name == "native"
+            else f"no such engine; known: {', '.join(others)}"
+        )
+        for name in (named if isinstance(named, dict) else ())
+        if name not in others
+    ]
+
+
 def get_engine(name: str) -> Engine:
     """Raises KeyError for a name that is not one of ENGINES."""
     return ENGINES[name]

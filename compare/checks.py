@@ -15,7 +15,7 @@ import pandas as pd
 from scipy import stats
 from statsmodels.stats.weightstats import DescrStatsW
 
-from .quantities import QUANTITIES, Quantity
+from .quantities import QUANTITIES, Quantity, check_tables
 
 AGREES = "agrees"
 DIFFERS = "differs"
@@ -121,10 +121,10 @@ def check_faults(case: dict) -> list[str]:
     """A fault line for each factor of a ratio check that is not above 1, which the units of the schema cannot see."""
     return [
         f"check[{number}].{key}: {entry[key]:g} is not a factor above 1, as kind 'ratio' needs"
-        for number, entry in enumerate(case.get("check", []))
-        if entry["kind"] == "ratio"
+        for number, entry in check_tables(case)
+        if entry.get("kind") == "ratio"
         for key in ("margin", "seed_scatter")
-        if entry[key] <= 1
+        if isinstance(entry.get(key), (int, float)) and 0 < entry[key] <= 1
     ]
 
 

@@ -9,17 +9,16 @@ from rich.console import Console
 from crossdem import ExitCode
 from crossdem.adapters.case import Case, CaseError, load_case
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.engines import unknown_engines
 from crossdem.adapters.workspace import Workspace
 
-from .comparison import compare_runs, comparison_faults
+from .comparison import case_faults, compare_runs, comparison_faults
 from .runs import Runs, run_engines, write_inputs
 from .summary import print_summary
 
 
 def check(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
     case = _load(case_file, overrides)
-    if faults := comparison_faults(case, ()):
-        raise CaseError([f"{case_file}: {fault}" for fault in faults])
     with _workspace(case, overrides, out) as workspace:
         runs = run_engines(case, engines, seeds, workspace, jobs, Console())
     datasets = [Dataset.read(folder) for folder in runs.folders]
@@ -52,7 +51,7 @@ def compare(folders, out) -> ExitCode:
 
 
 def _load(case_file: Path, overrides: list[str]) -> Case:
-    case = load_case(case_file, overrides)
+    case = load_case(case_file, overrides, lambda raw: case_faults(raw) + unknown_engines(raw))
     for warning in case.warnings:
         click.echo(warning, err=True)
     return case

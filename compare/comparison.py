@@ -79,9 +79,14 @@ def compare_runs(
     )
 
 
+def case_faults(case: dict) -> list[str]:
+    """A line for everything in `case`, resolved or as read, that only the comparison can know to be wrong."""
+    return unknown_quantities(case) + check_faults(case)
+
+
 def comparison_faults(case: Case, datasets: Sequence[Dataset]) -> list[str]:
     """A line for everything that forbids to compare `datasets` under `case`."""
-    faults = unknown_quantities(case.resolved) + check_faults(case.resolved)
+    faults = case_faults(case.resolved)
     for dataset in datasets:
         if dataset.manifest["case_hash"] != case.hash:
             faults.append(

@@ -52,12 +52,19 @@ QUANTITIES = {
 }
 
 
+def check_tables(case: dict) -> list[tuple[int, dict]]:
+    """The [[check]] tables of a case, numbered; what stands there and is no table is the schema's business."""
+    entries = case.get("check", [])
+    numbered = enumerate(entries if isinstance(entries, list) else [])
+    return [(number, entry) for number, entry in numbered if isinstance(entry, dict)]
+
+
 def unknown_quantities(case: dict) -> list[str]:
-    """A fault line for each check of the resolved `case` that names no quantity known here."""
+    """A fault line for each check of `case`, resolved or as read, that names no quantity known here."""
     lines = []
-    for number, check in enumerate(case.get("check", [])):
-        name = check["quantity"]
-        if name in QUANTITIES:
+    for number, check in check_tables(case):
+        name = check.get("quantity")
+        if name in QUANTITIES or not isinstance(name, str):
             continue
         near = difflib.get_close_matches(name, QUANTITIES, n=1)
         hint = f"did you mean {near[0]!r}? " if near else ""

@@ -12,6 +12,7 @@
 namespace crossdem {
 namespace {
 
+constexpr double most_steps = 1e9;               // in an interval: far above any use, far below what a long counts
 constexpr double densest_disc_packing = 0.9069;  // pi / sqrt(12)
 
 std::string joined(const std::vector<std::string>& faults) {
@@ -29,7 +30,7 @@ std::string text(double value) {
 
 bool is_multiple(double interval, double step) {
   const double ratio = interval / step;
-  return ratio >= 0.5 && std::abs(ratio - std::round(ratio)) <= 1e-9 * ratio;
+  return ratio >= 0.5 && ratio <= most_steps && std::abs(ratio - std::round(ratio)) <= 1e-9 * ratio;
 }
 
 /// nlohmann::json silently keeps the last of two equal keys; a case must not depend on that.
@@ -38,15 +39,28 @@ class DuplicateKeys {
   bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
     using Event = nlohmann::json::parse_event_t;
     if (event == Event::object_start) open_.emplace_back();
-    if (event == Event::key && !open_.back().insert(parsed.get<std::string>()).second)
-      found.push_back(parsed.get<std::string>() + ": the key stands twice");
+    if (event == Event::key) {
+      open_.back().current = parsed.get<std::string>();
+      if (!open_.back().keys.insert(open_.back().current).second) found.push_back(path() + ": the key stands twice");
+    }
     if (event == Event::object_end) open_.pop_back();
     return true;
   }
   std::vector<std::string> found;
 
  private:
-  std::vector<std::set<std::string>> open_;
+  struct Object {
+    std::set<std::string> keys;
+    std::string current;
+  };
+
+  [[nodiscard]] std::string path() const {
+    std::string text;
+    for (const Object& object : open_) text += (text.empty() ? "" : ".") + object.current;
+    return text;
+  }
+
+  std::vector<Object> open_;
 };
 
 /// What no single key can say: contradictions between keys that were each read without fault.
@@ -81,15 +95,16 @@ void check_consistency(const Case& c, schema::Reader& reader) {
 
   const double largest = *std::max_element(mix.diameters.begin(), mix.diameters.end());
   const double gap = c.packing.lattice_spacing - largest;
-  if (gap < 0.0) fault("packing.lattice_spacing_m", "is below the largest diameter: particles would overlap");
-  if (c.packing.jitter > gap / 2 * (1 + 1e-9))
+  if (gap < 0.0)
+    fault("packing.lattice_spacing_m", "is below the largest diameter: particles would overlap");
+  else if (c.packing.jitter > gap / 2 * (1 + 1e-9))
     fault("packing.jitter_m", "is more than half the gap of the lattice: particles would overlap");
   if (largest + 2 * c.packing.jitter > c.container.width)
     fault("particles.diameters_m", "the largest particle does not go into the container");
 
   const auto check_interval = [&](const char* key, double interval, double step, const std::string& step_key) {
     if (!is_multiple(interval, step))
-      fault(key, text(interval) + " s is not a whole number of steps of " + step_key + " = " + text(step) + " s");
+      fault(key, text(interval) + " s is not a whole number, up to 1e9, of " + step_key + " = " + text(step) + " s");
   };
   const auto check_limit = [&](const std::string& key, double step) {
     const double limit = eq32_time_step(c);
@@ -109,6 +124,8 @@ void check_consistency(const Case& c, schema::Reader& reader) {
   check_interval("time.penetration_s", c.time.penetration, c.time.sample_interval, "time.sample_interval_s");
   check_interval("time.penetration_s", c.time.penetration, c.time.frame_interval, "time.frame_interval_s");
   if (c.packing.step != c.time.step) check_limit("packing.step_s", c.packing.step);
+  if (c.packing.settling > c.packing.longest_settling)
+    fault("packing.settling_s", "is longer than packing.longest_settling_s");
   if (c.bar.speed * c.time.penetration >= c.container.height)
     fault("time.penetration_s", "the bar would go " + text(c.bar.speed * c.time.penetration) +
                                     " m deep in a container of " + text(c.container.height) + " m");
@@ -135,14 +152,14 @@ Case read_case(std::string_view json) {
   } catch (const nlohmann::json::exception& error) {
     throw CaseError({"not valid JSON: " + std::string(error.what())});
   }
-  if (!duplicates.found.empty()) throw CaseError(duplicates.found);
-
   Case c;
   schema::Reader reader(root);
   reader.whole([&] { schema::root(reader, c); });
   for (const char* engine : {"liggghts", "yade"}) c.engines.try_emplace(engine, EngineSettings{c.time.step / 2});
   if (reader.faults().empty()) check_consistency(c, reader);
-  if (!reader.faults().empty()) throw CaseError(reader.faults());
+  std::vector<std::string> faults = std::move(duplicates.found);
+  faults.insert(faults.end(), reader.faults().begin(), reader.faults().end());
+  if (!faults.empty()) throw CaseError(std::move(faults));
   return c;
 }
 

@@ -18,7 +18,10 @@ class Reader {
   explicit Reader(const nlohmann::json& root) : object_(&root) {}
 
   [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
-  void fault(const std::string& key, const std::string& message) { faults_.push_back(path(key) + ": " + message); }
+  void fault(const std::string& key, const std::string& message) {
+    const std::string at = path(key);
+    faults_.push_back(at.empty() ? message : at + ": " + message);
+  }
 
   void number(const std::string& key, double& value, Range range, std::optional<double> fallback = std::nullopt) {
     if (const auto* entry = find(key, fallback.has_value())) {

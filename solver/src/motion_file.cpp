@@ -25,6 +25,12 @@ class Handle {
   Close close_;
 };
 
+hid_t create(const std::filesystem::path& path) {
+  H5dont_atexit();                              // its exit handler crashes on a file that a full disk kept from closing
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown here, not printed there
+  return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+}
+
 using Shape = std::vector<hsize_t>;
 
 }  // namespace
@@ -116,11 +122,7 @@ struct MotionFile::File {
 };
 
 MotionFile::File::File(std::filesystem::path at, const Case& setup, const Particles& particles)
-    : path(std::move(at)),
-      file((H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr),  // errors are thrown here, not printed there
-            H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)),
-           H5Fclose, path),
-      particle_count(particles.count()) {
+    : path(std::move(at)), file(create(path), H5Fclose, path), particle_count(particles.count()) {
   const std::array<int, 2> h5md_version{1, 1};
   group("/h5md");
   attribute("/h5md", "version", H5T_NATIVE_INT, h5md_version.data(), h5md_version.size());

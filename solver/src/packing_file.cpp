@@ -74,6 +74,7 @@ Packing read_packing(const std::filesystem::path& csv, const Case& setup) {
   const std::filesystem::path beside = std::filesystem::path(csv).replace_filename("packing.json");
   try {
     const nlohmann::json facts = nlohmann::json::parse(read_text(beside, most_bytes));
+    if (!facts.at("seed").is_number_unsigned()) throw CaseError({beside.string() + ": seed must be a whole number that is not negative"});
     packing.seed = facts.at("seed").get<std::uint64_t>();
     packing.bar_tip = facts.at("bar_tip_m").get<double>();
     packing.contacts = facts.at("contacts").get<std::size_t>();
@@ -82,6 +83,11 @@ Packing read_packing(const std::filesystem::path& csv, const Case& setup) {
     packing.settling = facts.at("settling_s").get<double>();
   } catch (const nlohmann::json::exception& error) {
     throw CaseError({beside.string() + ": " + error.what()});
+  }
+  const double touching = touching_height(setup.bar, packing.radius, packing.position);
+  if (!(packing.bar_tip >= touching)) {
+    throw CaseError({beside.string() + ": bar_tip_m = " + exact(packing.bar_tip) +
+                     " m lies inside the bed, which the bar touches at " + exact(touching) + " m"});
   }
   const double deepest = packing.bar_tip - setup.bar.speed * setup.time.penetration;
   if (!(deepest > 0.0)) {

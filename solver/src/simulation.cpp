@@ -13,8 +13,8 @@ namespace {
 /// bed that creeps, narrow enough that few pairs are looked at in vain.
 constexpr double skin_share = 0.2;
 
-/// Kinetic energy beyond this multiple of what was there at the start and weight over the container's height can give
-/// is no physics.
+/// Kinetic energy beyond this multiple of what motion and springs held at the start, and of what weight can give over
+/// the container's height, is no physics.
 constexpr double explosion_factor = 10.0;
 /// The same for the bar's push: no particle gets this many times faster than the bar.
 constexpr double explosion_speed = 100.0;
@@ -62,9 +62,7 @@ Simulation::Simulation(const Case& setup, Particles particles, std::optional<dou
     }
   }
   w.kinetic_at_start = kinetic_energy(p);
-  const double bar_speed = bar_tip ? explosion_speed * setup.bar.speed : 0.0;
-  w.kinetic_limit = explosion_factor * (w.kinetic_at_start + total_mass(p) * w.gravity * setup.container.height) +
-                    0.5 * total_mass(p) * bar_speed * bar_speed;
+  w.kinetic_limit = w.kinetic_at_start;
   w.check();
   w.contacts.rebuild(p, w.surfaces);
   for (PairContact& contact : w.contacts.pairs()) {
@@ -79,6 +77,10 @@ Simulation::Simulation(const Case& setup, Particles particles, std::optional<dou
   }
   w.momentum_at_start = momentum(p);
   w.spring_at_start = w.spring_energy();
+  const double bar_speed = bar_tip ? explosion_speed * setup.bar.speed : 0.0;
+  const double weight_energy = total_mass(p) * w.gravity * setup.container.height;
+  w.kinetic_limit = explosion_factor * (w.kinetic_at_start + w.spring_at_start + weight_energy) +
+                    0.5 * total_mass(p) * bar_speed * bar_speed;
   w.moment_of_mass_at_start = moment_of_mass(p);
 }
 

@@ -73,6 +73,31 @@ def test_a_negative_or_non_finite_number(refused, value):
     assert "bar.speed_m_s: " in refused(REFERENCE, "--set", f"bar.speed_m_s={value}")
 
 
+def test_what_only_the_harness_knows_is_told_in_the_same_go(refused):
+    overrides = [
+        "check[0].quantity=mean_resistence_N",
+        "engines.yaed.step_s=5e-5",
+        "bar.width_m=-1",
+    ]
+    said = refused(REFERENCE, *(word for text in overrides for word in ("--set", text)))
+    for fault in (
+        "check[0].quantity: unknown quantity 'mean_resistence_N'; did you mean 'mean_resistance_N'?",
+        "engines.yaed: no such engine; known: liggghts, yade",
+        "bar.width_m: must be above 0",
+    ):
+        assert f"bar_penetration.toml: {fault}" in said
+
+
+def test_a_time_step_for_the_native_solver_beside_its_own(refused):
+    said = refused(REFERENCE, "--set", "engines.native.step_s=5e-5")
+    assert "engines.native: its time step is time.step_s" in said
+
+
+@pytest.mark.parametrize("check", ["5", "[5]", '[{quantity = 5, kind = "ratio", margin = "x"}]'])
+def test_checks_that_are_no_checks(refused, check):
+    assert "bar_penetration.toml: check" in refused(REFERENCE, "--set", f"check={check}")
+
+
 def test_a_bar_wider_than_the_box(refused):
     said = refused(REFERENCE, "--set", "bar.width_m=0.2")
     assert "bar.width_m: " in said and "0.15" in said

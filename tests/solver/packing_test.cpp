@@ -175,6 +175,21 @@ TEST_F(PackingFile, RefusesFactsThatAreMissingOrBroken) {
   EXPECT_THROW(read_packing(csv(), few()), FileError);
 }
 
+TEST_F(PackingFile, RefusesABarThatStartsInsideTheBed) {
+  std::string facts;
+  for (const std::string& line : lines_of(folder / "packing.json"))
+    facts += line.find("bar_tip_m") == std::string::npos ? line : R"("bar_tip_m": 0.01,)";
+  std::ofstream(folder / "packing.json") << facts;
+  expect_refused("packing.json: bar_tip_m = 0.01 m lies inside the bed, which the bar touches at ");
+}
+
+TEST_F(PackingFile, RefusesASeedThatIsNoSeed) {
+  for (const char* seed : {"-1", "1.5", "\"1\""}) {
+    std::ofstream(folder / "packing.json") << R"({"seed": )" << seed << "}";
+    expect_refused("packing.json: seed must be a whole number that is not negative");
+  }
+}
+
 TEST_F(PackingFile, RefusesAPenetrationThroughTheFloor) {
   Case deep = few();
   deep.time.penetration = 100 * bed.bar_tip;  // at 0.01 m/s

@@ -31,11 +31,12 @@ struct MomentumLedger {
   Vector2 weight = Vector2::Zero();
   Vector2 change = Vector2::Zero();  // of sum m v
 
-  /// Zero but for rounding, whatever the time step.
+  /// Zero but for rounding, whatever the time step; not with the reading "in turn", whose contacts push their two
+  /// partners unequally.
   [[nodiscard]] Vector2 residual() const { return change - (left_wall + right_wall + floor + bar + weight); }
 };
 
-/// Where energy is and went since the start [J].
+/// Where energy is and went since the start [J]. With the reading "in turn" each contact counts twice.
 struct EnergyLedger {
   double kinetic = 0.0;           // now
   double spring = 0.0;            // now, e_n^2 / 2 k_n + e_s^2 / 2 k_s
