@@ -26,6 +26,7 @@ class Case:
     resolved: dict
     canonical: bytes  # the solver's JSON: keys sorted, no white space
     warnings: tuple[str, ...] = field(default=(), compare=False)  # printable lines
+    file_name: str = field(default="case.json", compare=False)  # as messages name it
 
     @property
     def hash(self) -> str:
@@ -94,7 +95,7 @@ def _resolve(raw: dict, file_name: str) -> Case:
     if done.returncode:
         raise CaseError(said or [f"{file_name}: refused by crossdem-solver without a word"])
     canonical = done.stdout.rstrip(b"\n")
-    return Case(json.loads(canonical), canonical, tuple(said))
+    return Case(json.loads(canonical), canonical, tuple(said), file_name)
 
 
 def _to_json(value):

@@ -44,9 +44,14 @@ MANIFEST_KEYS = (
     "run_key",
 )
 
+GATE_KEYS = {"name", "value", "limit", "passed", "message"}
+
 TIME_TOLERANCE_S = 1e-9  # far below any time step, far above round-off
 LENGTH_TOLERANCE_M = 1e-9
 FORCE_TOLERANCE_N = 1e-9  # for the sum of tip and shaft
+FORCE_ROUNDING = (
+    1e-12  # the same, as a share of the largest force: contacts are summed in another order
+)
 
 
 def sample_times_s(case: dict) -> np.ndarray:
@@ -81,6 +86,10 @@ def _manifest_faults(case, manifest, radius_m, motion, resistance) -> Iterator[s
         yield f"the manifest lacks {', '.join(missing)}"
     elif manifest["schema_version"] != SCHEMA_VERSION:
         yield f"the manifest is of schema version {manifest['schema_version']!r}; this crossdem reads {SCHEMA_VERSION}"
+    elif not isinstance(manifest["gates"], list) or not all(
+        isinstance(gate, dict) and gate.keys() >= GATE_KEYS for gate in manifest["gates"]
+    ):
+        yield f"the manifest's gates are not a list of objects with {', '.join(sorted(GATE_KEYS))}"
 
 
 def _shape_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]:
@@ -154,7 +163,8 @@ def _value_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]
 
     parts_N = resistance["tip_force_y_N"] + resistance["shaft_force_y_N"]
     gap_N = float(np.max(np.abs(parts_N - resistance["force_y_N"])))
-    if gap_N > FORCE_TOLERANCE_N:
+    largest_N = float(np.max(np.abs(resistance["force_y_N"])))
+    if gap_N > FORCE_TOLERANCE_N + FORCE_ROUNDING * largest_N:
         yield f"tip and shaft do not sum up to force_y_N (by up to {gap_N:.3g} N)"
     contacts = resistance["contacts"]
     if (contacts < 0).any() or (contacts != np.rint(contacts)).any():

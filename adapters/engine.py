@@ -34,6 +34,9 @@ class Engine(ABC):
     program: str  # the word of `command` that `executable` stands for, as people would type it
     samples_file: str  # grows by one line per sample: shows the progress
     kept_output: tuple[str, ...] = ()  # files of output/ worth keeping beside the dataset
+    by_hand: str = (
+        ""  # a sentence for README.txt: what the command needs that is not there of itself
+    )
     cost_s: float  # measured CPU time per particle and step, to order runs and to notice a hang
 
     @abstractmethod
@@ -81,8 +84,11 @@ class Engine(ABC):
         return None
 
     def digest(self) -> str:
-        """SHA-256 [hex] of what the run's result depends on beside case, packing and version: the script."""
-        return hashlib.sha256(self.script.read_bytes() if self.script else b"").hexdigest()
+        """SHA-256 [hex] of what the run's result depends on beside case, packing and version: its files here."""
+        content = hashlib.sha256()
+        for source in sorted(Path(__file__).parent.glob(f"{self.name}*.*")):
+            content.update(source.read_bytes())
+        return content.hexdigest()
 
     def schedule(self, case: Case) -> Schedule:
         return Schedule.of(case.resolved, case.step_s(self.name))

@@ -80,7 +80,7 @@ def read_motion(path: Path) -> tuple[Motion, np.ndarray]:
                 bar_tip_m=file["observables/bar/tip/value"][()],
             )
             return motion, soil["radius"][()]
-    except (OSError, KeyError, TypeError) as error:
+    except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
         raise MotionFileError(f"{path}: not a motion file of crossdem ({error})") from error
 
 

@@ -24,6 +24,7 @@ class Native(Engine):
     samples_file = f"{OUTPUT}/resistance.csv"
     kept_output = ("ledger.csv", "run.json")
     cost_s = 5e-8
+    by_hand = "crossdem-solver lies in build/release/solver of the crossdem checkout: put that folder on the PATH."
 
     def executable(self) -> str:
         try:
@@ -38,7 +39,8 @@ class Native(Engine):
         return self._version_line()[2]
 
     def digest(self) -> str:
-        return hashlib.sha256(Path(self.executable()).read_bytes()).hexdigest()
+        program = hashlib.sha256(Path(self.executable()).read_bytes())
+        return f"{super().digest()} {program.hexdigest()}"
 
     def command(self, case: Case, run_dir: Path) -> list[str]:
         packing = ["--packing", f"{INPUTS}/packing.csv"]

@@ -67,7 +67,7 @@ def make_packing(case: Case, seed: int, folder: Path) -> Packing:
     unfinished = Path(mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
     try:
         arguments = ["pack", "-", f"--seed={seed}", f"--output={unfinished}"]
-        done = call_solver([*arguments, f"--file-name={case.name}"], stdin=case.canonical)
+        done = call_solver([*arguments, f"--file-name={case.file_name}"], stdin=case.canonical)
         if done.returncode:
             raise CaseError(messages(done.stderr))
         unfinished.chmod(0o755)  # mkdtemp keeps others out

@@ -10,13 +10,12 @@ from pathlib import Path
 from .dataset import Dataset, DatasetError
 from .engine import EngineFailure, EngineNotFound
 from .engines import get_engine
-from .gates import with_gates
+from .gates import REFERENCE, contacts_at_rest, with_gates
 from .one_run import Limits, Run
 from .run_folder import RunRequest, run_key
 
 POLL_S = 0.1
 PROGRESS_S = 0.5
-REFERENCE = "native"  # the gates of the others refer to its contacts
 
 
 @dataclass(frozen=True)
@@ -134,8 +133,7 @@ class _Queue:
     def _end(self, run: Run, dataset: Dataset) -> None:
         self._ended.append((run, dataset))
         if run.engine.name == REFERENCE:
-            contacts = int(dataset.resistance["contacts"].iloc[0])
-            self._native_contacts[run.request.packing.hash] = contacts
+            self._native_contacts[run.request.packing.hash] = contacts_at_rest(dataset)
 
     def _keep_ended(self) -> None:
         """Finish the runs whose gates need not wait for a native run."""
@@ -147,7 +145,10 @@ class _Queue:
             self._keep(*entry)
 
     def _keep(self, run: Run, dataset: Dataset) -> None:
-        gated = with_gates(dataset, self._native_contacts.get(run.request.packing.hash))
+        native_contacts = self._native_contacts.get(run.request.packing.hash)
+        gated = dataset  # a run that is there keeps the gates it has, where there is nothing to set them by anew
+        if run.started or native_contacts is not None:
+            gated = with_gates(dataset, native_contacts)
         try:
             if run.started:
                 run.keep(gated)

@@ -47,7 +47,7 @@ def prepare(case: Case, packing: Packing, engine: Engine, folder: Path) -> None:
 def rerun_command(case: Case, engine: Engine, folder: Path) -> str:
     """The one shell command that runs the engine by hand, in `folder`."""
     settings = (f"{name}={shlex.quote(value)}" for name, value in engine.environment().items())
-    return f"mkdir -p {OUTPUT} && {' '.join(settings)} {shlex.join(engine.command(case, folder))}"
+    return f"rm -rf {OUTPUT} && mkdir {OUTPUT} && {' '.join(settings)} {shlex.join(engine.command(case, folder))}"
 
 
 def _readme(case: Case, packing: Packing, engine: Engine, folder: Path) -> str:
@@ -57,6 +57,8 @@ def _readme(case: Case, packing: Packing, engine: Engine, folder: Path) -> str:
 To run it again by hand, in this folder:
 
     {rerun_command(case, engine, folder)}
+
+{engine.by_hand}
 
 {INPUTS}/    all that the engine reads
 {OUTPUT}/    what it then writes

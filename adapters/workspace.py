@@ -2,6 +2,7 @@
 
 import fcntl
 import json
+import shutil
 from pathlib import Path
 from typing import IO
 
@@ -40,8 +41,9 @@ class Workspace:
         """Undoes the constructor: for a fault that shows only after it, before there are results."""
         if self._is_new:
             (self.root / _MARKER).unlink(missing_ok=True)
-            if (packings := self.root / "packings").is_dir() and not any(packings.iterdir()):
-                packings.rmdir()
+            shutil.rmtree(
+                self.root / "packings", ignore_errors=True
+            )  # new like all the rest, so it is ours
             self._remove_created()
 
     def _create_folders(self) -> None:

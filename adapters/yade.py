@@ -66,6 +66,7 @@ class Yade(Engine):
             "not at the full radius of Eqs (2) and (12)",
             "counts a first contact's shear displacement in full, without the share of Eq (4)",
             "rotates its shear spring with the contact to first order",
+            "of the readings in [scheme] knows only attraction and normal_spring",
         ]
         if scheme["attraction"] != "clipped":
             found.append(
@@ -106,9 +107,12 @@ def _version() -> str:
         "import glob, sys; sys.path[1:1] = glob.glob('/usr/lib/*/yade-double/py'); "
         "import yade.config; print('YADE', yade.config.version)"
     )
-    done = subprocess.run(
-        [PYTHON, "-c", ask], capture_output=True, text=True, errors="replace", timeout=120
-    )
+    try:
+        done = subprocess.run(
+            [PYTHON, "-c", ask], capture_output=True, text=True, errors="replace", timeout=120
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise EngineNotFound(f"yade does not say its version: {error}") from error
     found = re.search(r"^YADE (\S+)$", done.stdout, re.MULTILINE)
     if done.returncode or not found:
         raise EngineNotFound(

@@ -62,23 +62,24 @@ class Check:
         """A margin or scatter on the scale of the differences: the logarithm for quotients."""
         return math.log(value) if self.kind == "ratio" else value
 
-    def scatter(self, endpoints: pd.DataFrame) -> float:
+    def scatter(self, endpoints: pd.DataFrame, pair: tuple[str, str]) -> float:
         """Standard deviation of one run from seed to seed, on the scale of the differences.
 
-        The larger of the one stated and the one of the runs at hand, pooled over the engines: what the case states
-        was measured on the case as it stands, and a variant of it may scatter more.
+        The one stated, or that of the calmer engine of `pair` where it is larger: what the case states was measured on
+        the case as it stands, and a variant of it may scatter more. One engine that scatters wildly is no excuse.
         """
-        stated = self.on_scale(self.seed_scatter)
-        by_engine = endpoints[self.quantity.name].groupby(level="engine")
-        deviations = endpoints[self.quantity.name] - by_engine.transform("mean")
-        if self.kind == "relative":
-            deviations = deviations / by_engine.transform("mean").abs()
-        elif self.kind == "ratio":
-            logarithms = np.log(endpoints[self.quantity.name].where(lambda value: value > 0))
-            deviations = logarithms - logarithms.groupby(level="engine").transform("mean")
-        freedom = len(deviations) - by_engine.ngroups
-        measured = math.sqrt((deviations**2).sum() / freedom) if freedom > 0 else 0.0
-        return max(stated, measured) if math.isfinite(measured) else stated
+        measured = [
+            self._scatter_of(_runs_of(endpoints, engine, self.quantity.name)) for engine in pair
+        ]
+        return max(self.on_scale(self.seed_scatter), min(measured))
+
+    def _scatter_of(self, values: pd.Series) -> float:
+        """That of one engine's runs; 0 where they do not tell."""
+        if self.kind == "ratio":
+            values = np.log(values.where(values > 0))
+        unit = abs(values.mean()) if self.kind == "relative" else 1.0
+        scatter = float(values.std(ddof=1)) / unit if unit > 0 else math.nan
+        return scatter if math.isfinite(scatter) else 0.0
 
     def differences(self, a: pd.Series, b: pd.Series) -> pd.Series:
         """Paired differences a - b, on the scale of the kind; NaN or infinite where it has no meaning."""
@@ -172,7 +173,7 @@ def evaluate(
         means=tuple(float(values.mean()) for values in runs),
         difference=float(statistics.mean) if statistics else math.nan,
         interval=interval,
-        scatter=check.scatter(endpoints),
+        scatter=check.scatter(endpoints, pair),
         seeds_needed=seeds_needed(check.on_scale(check.margin), float(difference_scatter)),
         obstacles=obstacles,
     )

@@ -22,7 +22,7 @@ def check(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
     with _workspace(case, overrides, out) as workspace:
         runs = run_engines(case, engines, seeds, workspace, jobs, Console())
     datasets = [Dataset.read(folder) for folder in runs.folders]
-    return _report(case, datasets, runs.failures, workspace)
+    return _report(case, datasets, runs, workspace)
 
 
 def run(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
@@ -47,7 +47,9 @@ def compare(folders, out) -> ExitCode:
     case = Case.from_canonical((folders[0] / "inputs" / "case.json").read_bytes())
     if faults := comparison_faults(case, datasets):
         raise CaseError(faults)
-    return _report(case, datasets, {}, Workspace(out or Path("results") / f"{case.name}-compare"))
+    return _report(
+        case, datasets, Runs((), {}), Workspace(out or Path("results") / f"{case.name}-compare")
+    )
 
 
 def _load(case_file: Path, overrides: list[str]) -> Case:
@@ -69,10 +71,10 @@ def _workspace(case: Case, overrides: list[str], out: Path | None):
         raise
 
 
-def _report(case: Case, datasets: list[Dataset], failures: dict, workspace: Workspace) -> ExitCode:
+def _report(case: Case, datasets: list[Dataset], runs: Runs, workspace: Workspace) -> ExitCode:
     from .report import write_report  # here: its drawing library takes half a second to load
 
-    comparison = compare_runs(case, datasets, failures)
+    comparison = compare_runs(case, datasets, runs.failures, runs.unsupported)
     page = write_report(comparison, workspace.root)
     print_summary(comparison, page)
     return comparison.verdict.exit_code

@@ -11,6 +11,7 @@ import pandas as pd
 
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.gates import REFERENCE, contacts_at_rest, with_contacts_gate
 
 from .checks import Check, CheckResult, check_faults, evaluate
 from .quantities import endpoints, unknown_quantities
@@ -52,9 +53,14 @@ class Comparison:
 
 
 def compare_runs(
-    case: Case, datasets: Iterable[Dataset], failures: dict[tuple[str, int], str] | None = None
+    case: Case,
+    datasets: Iterable[Dataset],
+    failures: dict[tuple[str, int], str] | None = None,
+    unsupported: frozenset[tuple[str, int]] = frozenset(),
 ) -> Comparison:
     """Compare the `datasets` of one `case`; `failures` says for each (engine, seed) without one why.
+
+    Those of them that are `unsupported` make their engine not comparable; it has not failed.
 
     Raises ComparisonError when the datasets are not of this case, a run is there twice, or a check makes no sense.
     """
@@ -62,7 +68,7 @@ def compare_runs(
     engines = in_order(
         {dataset.engine for dataset in datasets} | {engine for engine, _ in failures}
     )
-    runs = tuple(sorted(datasets, key=lambda run: (engines.index(run.engine), run.seed)))
+    runs = gated(sorted(datasets, key=lambda run: (engines.index(run.engine), run.seed)))
     faults = comparison_faults(case, runs)
     if faults:
         raise ComparisonError(faults)
@@ -74,8 +80,27 @@ def compare_runs(
         for pair, obstacles in _pairs(engines, runs, failures, seeds)
         for check in Check.of_case(case.resolved)
     )
+    failed = {run: why for run, why in failures.items() if run not in unsupported}
     return Comparison(
-        case, engines, runs, failures, table, results, decide(engines, results, failures)
+        case, engines, runs, failures, table, results, decide(engines, results, failed)
+    )
+
+
+def gated(runs: Sequence[Dataset]) -> tuple[Dataset, ...]:
+    """The same runs, each with its gate on contacts where the native run of its packing is among them.
+
+    A run made before, or without, its native counterpart lacks that gate.
+    """
+    contacts = {
+        run.manifest["packing_hash"]: contacts_at_rest(run)
+        for run in runs
+        if run.engine == REFERENCE
+    }
+    return tuple(
+        with_contacts_gate(run, contacts[run.manifest["packing_hash"]])
+        if run.manifest["packing_hash"] in contacts
+        else run
+        for run in runs
     )
 
 

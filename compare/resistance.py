@@ -24,7 +24,7 @@ def deep_window(resistance: pd.DataFrame) -> pd.DataFrame:
 def resistance_profile(resistance: pd.DataFrame, bin_depth_m: float = 0.01) -> pd.DataFrame:
     """Mean and scatter (standard deviation of the samples) of the resistance [N] in bins of depth [m].
 
-    Indexed by the bins' middles. A bin holds its upper end; the last one its lower end too.
+    Indexed by the bins' middles. A bin holds its lower end; the last one its upper end too.
     """
     depth_m = resistance["depth_m"]
     bins = max(1, int(np.ceil(depth_m.iloc[-1] / bin_depth_m - ROUND_OFF_M)))

@@ -24,6 +24,9 @@ class Runs:
 
     folders: tuple[Path, ...]  # of the datasets, or of the inputs where only these were asked for
     failures: dict[tuple[str, int], str]  # (engine, seed): why there is none
+    unsupported: frozenset[
+        tuple[str, int]
+    ] = frozenset()  # those of failures that no engine is to blame for
 
 
 def run_engines(
@@ -42,13 +45,13 @@ def run_engines(
         if reused := sum(result.status == "reused" for result in results):
             display.say(f"{reused} of these were there already")
     failures = {(engine, seed): why for engine in engines for seed, why in unsettled.items()}
-    failures |= {
-        (result.request.engine_name, result.request.packing.seed): result.failure
-        for result in results
-        if result.failure
+    by_run = {
+        (result.request.engine_name, result.request.packing.seed): result for result in results
     }
+    failures |= {run: result.failure for run, result in by_run.items() if result.failure}
+    unsupported = frozenset(run for run, result in by_run.items() if result.status == "unsupported")
     folders = (result.dataset_folder for result in results)
-    return Runs(tuple(folder for folder in folders if folder), failures)
+    return Runs(tuple(folder for folder in folders if folder), failures, unsupported)
 
 
 def settle(

@@ -64,10 +64,10 @@ def decide(
         word, sentence, next_step = INCONCLUSIVE, *_nothing_to_compare(engines)
     elif checks.NOT_COMPARABLE in outcomes:
         word, sentence, next_step = INCONCLUSIVE, *_not_comparable(results)
-    elif all(outcome == checks.AGREES for outcome in outcomes):
-        word, sentence, next_step = AGREES, *_agrees(engines, results, seeds)
     elif smoke:
         word, sentence, next_step = CONSISTENT, *_consistent(engines, seeds, needed)
+    elif all(outcome == checks.AGREES for outcome in outcomes):
+        word, sentence, next_step = AGREES, *_agrees(engines, results, seeds)
     else:
         word, sentence, next_step = INCONCLUSIVE, *_unsettled(results, seeds)
     return Verdict(word, sentence, next_step, seeds, needed)
@@ -96,7 +96,10 @@ def _failed(failures) -> tuple[str, str]:
     (engine, seed), message = next(iter(sorted(failures.items())))
     more = f" (and {plural(len(failures) - 1, 'more run')})" if len(failures) > 1 else ""
     sentence = f"{engine}, seed {seed}, has no result: {message.rstrip('.')}{more}."
-    return sentence, "`crossdem doctor` shows which engines are here and what to install."
+    return (
+        sentence,
+        "Read the log that it names; `crossdem doctor` shows which engines are here and what to install.",
+    )
 
 
 def _nothing_to_compare(engines) -> tuple[str, str]:
@@ -117,7 +120,8 @@ def _not_comparable(results) -> tuple[str, str]:
     sentence = f"Not comparable: {first.obstacles[0].rstrip('.')}."
     return (
         sentence,
-        "See the gates; a bed that does not rest usually does at a smaller time step (engines.NAME.step_s).",
+        "See the gates and the missing runs; a bed that does not rest usually does at a smaller time step "
+        "(engines.NAME.step_s).",
     )
 
 

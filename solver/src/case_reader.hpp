@@ -18,6 +18,8 @@ class Reader {
   explicit Reader(const nlohmann::json& root) : object_(&root) {}
 
   [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
+  /// True when every key that the schema knows was read; there may still be keys that it does not know.
+  [[nodiscard]] bool complete() const { return faults_.size() == unknown_keys_; }
   void fault(const std::string& key, const std::string& message) {
     const std::string at = path(key);
     faults_.push_back(at.empty() ? message : at + ": " + message);
@@ -201,8 +203,11 @@ class Reader {
     const nlohmann::json* outer_object = std::exchange(object_, &table);
     std::set<std::string> outer_known = std::exchange(known_, {});
     body();
-    for (const auto& [name, value] : table.items())
-      if (!known_.contains(name)) fault(name, "unknown key; known here: " + listed_known());
+    for (const auto& [name, value] : table.items()) {
+      if (known_.contains(name)) continue;
+      fault(name, "unknown key; known here: " + listed_known());
+      ++unknown_keys_;
+    }
     known_ = std::move(outer_known);
     object_ = outer_object;
     prefix_ = outer_prefix;
@@ -221,6 +226,7 @@ class Reader {
   std::string prefix_;
   std::set<std::string> known_;
   std::vector<std::string> faults_;
+  std::size_t unknown_keys_ = 0;
 };
 
 }  // namespace crossdem::schema

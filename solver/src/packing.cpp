@@ -100,7 +100,16 @@ Packing make_packing(const Case& setup, std::uint64_t seed) {
     throw CaseError({"particles.count: the bed does not fit: settled it is " + std::to_string(packing.bed_height) +
                      " m high in a container of " + std::to_string(setup.container.height) + " m"});
   }
+  check_bar_stays_above_floor(setup, packing.bar_tip);
   return packing;
+}
+
+void check_bar_stays_above_floor(const Case& setup, double bar_tip) {
+  const double way = setup.bar.speed * setup.time.penetration;
+  if (!(bar_tip > way)) {
+    throw CaseError({"time.penetration_s: the bar starts at " + std::to_string(bar_tip) + " m and goes down by " +
+                     std::to_string(way) + " m, through the floor; shorten the penetration"});
+  }
 }
 
 double touching_height(const BarGeometry& bar, const std::vector<double>& radius,

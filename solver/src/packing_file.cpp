@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include "bar.hpp"
 #include "crossdem/packing.hpp"
 #include "text_file.hpp"
 
@@ -85,16 +86,14 @@ Packing read_packing(const std::filesystem::path& csv, const Case& setup) {
   } catch (const nlohmann::json::exception& error) {
     throw CaseError({beside.string() + ": " + error.what()});
   }
-  const double touching = touching_height(setup.bar, packing.radius, packing.position);
-  if (!(packing.bar_tip >= touching)) {
-    throw CaseError({beside.string() + ": bar_tip_m = " + exact(packing.bar_tip) +
-                     " m lies inside the bed, which the bar touches at " + exact(touching) + " m"});
+  const Bar bar(setup.bar, packing.bar_tip);
+  for (std::size_t i = 0; i < packing.position.size(); ++i) {
+    if (bar.contains(packing.position[i])) {
+      throw CaseError({beside.string() + ": with bar_tip_m = " + exact(packing.bar_tip) + " m particle " +
+                       std::to_string(i) + " lies inside the bar"});
+    }
   }
-  const double deepest = packing.bar_tip - setup.bar.speed * setup.time.penetration;
-  if (!(deepest > 0.0)) {
-    throw CaseError({"time.penetration_s: the bar starts at " + exact(packing.bar_tip) +
-                     " m and would go through the floor; shorten the penetration"});
-  }
+  check_bar_stays_above_floor(setup, packing.bar_tip);
   return packing;
 }
 

@@ -25,17 +25,20 @@ void ResistanceFile::row(double time, double depth, const Simulation& simulation
 
 LedgerFile::LedgerFile(const std::filesystem::path& path) : file_(path) {
   file_.line(
-      "time_s,momentum_change_x_Ns,momentum_change_y_Ns,left_wall_x_Ns,right_wall_x_Ns,floor_y_Ns,bar_y_Ns,weight_y_Ns,"
-      "residual_x_Ns,residual_y_Ns,kinetic_J,spring_J,potential_change_J,bar_work_J,contact_work_J,dissipated_J,"
-      "integration_J");
+      "time_s,momentum_change_x_Ns,momentum_change_y_Ns,left_wall_x_Ns,left_wall_y_Ns,right_wall_x_Ns,right_wall_y_Ns,"
+      "floor_x_Ns,floor_y_Ns,bar_x_Ns,bar_y_Ns,weight_x_Ns,weight_y_Ns,residual_x_Ns,residual_y_Ns,"
+      "kinetic_J,spring_J,potential_change_J,bar_work_J,contact_work_J,dissipated_J,integration_J");
 }
 
 void LedgerFile::row(double time, const Simulation& simulation) {
   const MomentumLedger m = simulation.momentum_ledger();
   const EnergyLedger e = simulation.energy_ledger();
-  file_.line(row_of(time, m.change.x(), m.change.y(), m.left_wall.x(), m.right_wall.x(), m.floor.y(), m.bar.y(),
-                    m.weight.y(), m.residual().x(), m.residual().y(), e.kinetic, e.spring, e.potential_change,
-                    e.bar_work, e.contact_work, e.dissipated(), e.integration()));
+  std::string row = exact(time);
+  for (const Vector2& entry : {m.change, m.left_wall, m.right_wall, m.floor, m.bar, m.weight, m.residual()})
+    row += "," + row_of(entry.x(), entry.y());
+  file_.line(
+      row + "," +
+      row_of(e.kinetic, e.spring, e.potential_change, e.bar_work, e.contact_work, e.dissipated(), e.integration()));
 }
 
 }  // namespace crossdem

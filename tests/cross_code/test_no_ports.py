@@ -57,4 +57,5 @@ def test_an_engine_listens_on_no_port(engine, case, tmp_path):
             time.sleep(0.02)
     finally:
         process.kill()
+    assert samples.exists(), "the engine did not run"
     assert seen == set()

@@ -20,8 +20,12 @@ def runs(seeds=2, factors=(1.0, 1.0, 1.0), noise=0.0, engines=ENGINES):
     ]
 
 
-def test_identical_runs_agree():
-    comparison = compare_runs(RUN_CASE, runs())
+def test_two_identical_runs_are_consistent_as_two_seeds_prove_nothing():
+    assert compare_runs(RUN_CASE, runs()).verdict.word == verdict.CONSISTENT
+
+
+def test_identical_runs_of_enough_seeds_agree():
+    comparison = compare_runs(RUN_CASE, runs(seeds=16))
     assert comparison.verdict.word == verdict.AGREES
     assert comparison.verdict.exit_code == ExitCode.AGREES
     assert "native, liggghts and yade agree" in comparison.verdict.sentence
@@ -46,6 +50,24 @@ def test_enough_seeds_that_settle_nothing_are_inconclusive():
     shifted = runs(seeds=16, factors=(1, 1.1, 1), noise=0.05)
     said = compare_runs(RUN_CASE, shifted).verdict
     assert (said.word, said.exit_code) == (verdict.INCONCLUSIVE, ExitCode.INCONCLUSIVE)
+
+
+def test_an_engine_that_cannot_express_the_case_has_not_failed():
+    why = {("yade", 1): "yade: it cannot", ("yade", 2): "yade: it cannot"}
+    both = runs(engines=ENGINES[:2])
+    said = compare_runs(RUN_CASE, both, why, frozenset(why)).verdict
+    assert (said.word, said.exit_code) == (verdict.INCONCLUSIVE, ExitCode.INCONCLUSIVE)
+    assert said.sentence.startswith("Not comparable: yade, seed 1: yade: it cannot")
+    assert compare_runs(RUN_CASE, both, why).verdict.word == verdict.ENGINE_FAILED
+
+
+def test_the_gate_on_contacts_is_set_anew_for_a_run_made_without_native():
+    native, other = runs(1, engines=("native", "liggghts"))
+    other.resistance.loc[0, "contacts"] *= 2
+    assert "contacts_share" not in {gate["name"] for gate in other.manifest["gates"]}
+    comparison = compare_runs(RUN_CASE, [native, other])
+    assert comparison.verdict.word == verdict.INCONCLUSIVE
+    assert "the rested bed is another one" in comparison.verdict.sentence
 
 
 def test_a_failed_gate_is_inconclusive_whatever_the_numbers_say():

@@ -87,6 +87,18 @@ TEST(CaseWarnings, NameThePackedBedLimitOfTheScheme) {
   EXPECT_NE(found[1].find("6.21e-05 s"), std::string::npos) << found[1];
 }
 
+TEST(CaseWarnings, TrueVelocitiesAndThePackingHaveLimitsOfTheirOwn) {
+  Case c = small_case();
+  EXPECT_TRUE(warnings(c).empty());
+  c.packing.step = 2e-4;
+  ASSERT_EQ(warnings(c).size(), 1U);
+  EXPECT_EQ(warnings(c)[0].rfind("packing.step_s = 0.0002 s is above the packed-bed limit", 0), 0U) << warnings(c)[0];
+  c.packing.step = c.time.step;
+  c.scheme.readings.dashpot_velocity = DashpotVelocity::true_velocity;  // 1e-4 s against 6.2e-5 s
+  ASSERT_EQ(warnings(c).size(), 1U);
+  EXPECT_EQ(warnings(c)[0].rfind("time.step_s = 0.0001 s is above", 0), 0U) << warnings(c)[0];
+}
+
 TEST(CaseWarnings, WithoutShearDashpotsThereIsNoPackedBedLimit) {
   Case c = small_case();
   c.time.step = 1.0;

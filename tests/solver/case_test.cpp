@@ -120,7 +120,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"/time/rest_s", 0.10005, "time.rest_s: 0.1001 s is not a whole number, up to 1e9, of time.step_s"},
         Fault{"/time/penetration_s", 0.25,
               "time.penetration_s: 0.25 s is not a whole number, up to 1e9, of time.frame_i"},
-        Fault{"/bar/speed_m_s", 0.8, "time.penetration_s: the bar would go 0.16 m deep in a container of 0.15 m"}),
+        Fault{"/bar/length_m", 0.0001, "bar.length_m: the bar is shorter than its way of"},
+        Fault{"/bar/speed_m_s", 0.75, "time.penetration_s: the bar would go 0.15 m deep in a container of 0.15 m"}),
     [](const auto& at) { return "Nr" + std::to_string(at.index); });
 
 TEST(Case, TheSmallBedHasNoFault) { EXPECT_TRUE(faults_of(small_json().dump()).empty()); }
@@ -137,6 +138,10 @@ TEST(Case, AllFaultsAreReportedInOneGo) {
   EXPECT_EQ(faults.size(), 5U);
   const auto message = message_of<CaseError>([&] { read_case(root.dump()); });
   EXPECT_EQ(std::count(message->begin(), message->end(), '\n'), 4) << "what() names all of them";
+}
+
+TEST(Case, AnUnknownKeyDoesNotHideAContradiction) {
+  EXPECT_EQ(faults_of(small_json({{"bar", {{"colour", 1}, {"width_m", 0.1}}}}).dump()).size(), 2U);
 }
 
 TEST(Case, SeveralContradictionsAreReportedInOneGo) {

@@ -175,12 +175,12 @@ TEST_F(PackingFile, RefusesFactsThatAreMissingOrBroken) {
   EXPECT_THROW(read_packing(csv(), few()), FileError);
 }
 
-TEST_F(PackingFile, RefusesABarThatStartsInsideTheBed) {
+TEST_F(PackingFile, RefusesABarThatStartsWithAParticleInside) {
   std::string facts;
   for (const std::string& line : lines_of(folder / "packing.json"))
     facts += line.find("bar_tip_m") == std::string::npos ? line : R"("bar_tip_m": 0.01,)";
   std::ofstream(folder / "packing.json") << facts;
-  expect_refused("packing.json: bar_tip_m = 0.01 m lies inside the bed, which the bar touches at ");
+  expect_refused("packing.json: with bar_tip_m = 0.01 m particle ");
 }
 
 TEST_F(PackingFile, RefusesASeedThatIsNoSeed) {
@@ -196,6 +196,12 @@ TEST_F(PackingFile, RefusesAPenetrationThroughTheFloor) {
   const auto message = message_of<CaseError>([&] { read_packing(csv(), deep); });
   ASSERT_TRUE(message.has_value());
   EXPECT_EQ(message->rfind("time.penetration_s: the bar starts at ", 0), 0U) << *message;
+}
+
+TEST_F(PackingFile, ABedInWhichTheBarWouldReachTheFloorIsNotMade) {
+  Case deep = few();
+  deep.time.penetration = 100 * bed.bar_tip;
+  EXPECT_THROW(make_packing(deep, 3), CaseError);
 }
 
 TEST_F(PackingFile, AFileThatIsNotThereIsAFileError) {

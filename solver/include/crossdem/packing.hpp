@@ -23,11 +23,14 @@ struct Packing {
 
 /// Lattice, jitter, small random velocities, then settling by the scheme of the case under its own container walls.
 /// Equal cases and seeds give equal bits. Throws SimulationError when the bed does not come to rest, CaseError when it
-/// is higher than the container.
+/// is higher than the container or so low that the bar would reach the floor.
 Packing make_packing(const Case& setup, std::uint64_t seed);
 
 /// Height at which a bar of this geometry touches the topmost particle under it, corners included [m].
 double touching_height(const BarGeometry& bar, const std::vector<double>& radius, const std::vector<Vector2>& position);
+
+/// Throws CaseError where a bar that starts at `bar_tip` [m] would reach the floor within the penetration.
+void check_bar_stays_above_floor(const Case& setup, double bar_tip);
 
 /// Writes packing.csv (id, x_m, y_m, radius_m) and packing.json into an existing folder.
 void write_packing(const Packing& packing, const std::filesystem::path& folder);
