@@ -99,7 +99,9 @@ class Dataset:
             resistance = pd.read_csv(folder / "resistance.csv", float_precision="round_trip")
             motion, radius_m = read_motion(folder / "motion.h5")
         except (OSError, ValueError, MotionFileError) as error:
-            raise DatasetError(f"{folder}: not a readable dataset ({error})") from error
+            raise DatasetError(
+                f"{folder}: not a finished run ({error}); give run folders such as OUT/runs/*"
+            ) from error
         if not isinstance(manifest, dict) or not isinstance(case, dict):
             raise DatasetError(
                 f"{folder}: manifest.json and inputs/case.json must each hold an object"

@@ -57,8 +57,8 @@ def _with_position(path: Path, content: bytes, message: str) -> str:
     """tomllib's `what (at line 3, column 5)` as `FILE:3:5: what`."""
     if told := re.fullmatch(r"(.*) \(at line (\d+), column (\d+)\)", message, re.DOTALL):
         what, line, column = told.groups()
-        return f"{path}:{line}:{column}: {what}"
+        return f"{path}:{line}:{column}: not valid TOML: {what}"
     if told := re.fullmatch(r"(.*) \(at end of document\)", message, re.DOTALL):
         line, column = _position(content)
-        return f"{path}:{line}:{column}: {told[1]} (the file ends here)"
+        return f"{path}:{line}:{column}: not valid TOML: {told[1]} (the file ends here)"
     return f"{path}: a number has thousands of digits"

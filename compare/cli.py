@@ -52,7 +52,8 @@ _seeds = click.option(
 _out = click.option(
     "--out",
     type=click.Path(path_type=Path),
-    help="Output folder. [default: results/ and the name of the case]",
+    help="Output folder. [default: results/NAME of the case, results/NAME-HASH with --set, "
+    "results/NAME-compare for compare]",
 )
 _jobs = click.option(
     "--jobs",

@@ -82,7 +82,13 @@ def compare_runs(
     )
     failed = {run: why for run, why in failures.items() if run not in unsupported}
     return Comparison(
-        case, engines, runs, failures, table, results, decide(engines, results, failed)
+        case,
+        engines,
+        runs,
+        failures,
+        table,
+        results,
+        decide(engines, results, failed, _failed_gates(runs)),
     )
 
 
@@ -130,6 +136,15 @@ def in_order(engines: Iterable[str]) -> tuple[str, ...]:
     return tuple(sorted(engines, key=lambda engine: (rank.get(engine, len(rank)), engine)))
 
 
+def _failed_gates(runs: Iterable[Dataset]) -> list[str]:
+    return [
+        f"{run.engine}, seed {run.seed}: {gate['message']}"
+        for run in runs
+        for gate in run.manifest["gates"]
+        if not gate["passed"]
+    ]
+
+
 def _pairs(engines, runs, failures, seeds):
     """Each pair of engines, the later one first (liggghts against native), with what forbids to compare it."""
     packing = {(run.engine, run.seed): run.manifest["packing_hash"] for run in runs}
@@ -140,13 +155,7 @@ def _pairs(engines, runs, failures, seeds):
                 if (engine, seed) not in packing:
                     why = failures.get((engine, seed), "not run")
                     obstacles.append(f"{engine}, seed {seed}: {why}")
-        obstacles += [
-            f"{run.engine}, seed {run.seed}: {gate['message']}"
-            for run in runs
-            if run.engine in (first, second)
-            for gate in run.manifest["gates"]
-            if not gate["passed"]
-        ]
+        obstacles += _failed_gates([run for run in runs if run.engine in (first, second)])
         obstacles += [
             f"seed {seed}: {first} and {second} did not start from the same packing"
             for seed in sorted(seeds)

@@ -31,7 +31,7 @@ def print_summary(
     console = console or Console()
     result = comparison.verdict
     table = Table(box=None, pad_edge=False, header_style="dim")
-    table.add_column("mean of all seeds")
+    table.add_column("mean ± standard deviation from seed to seed")
     for engine in comparison.engines:
         table.add_column(Text(printable(engine)), justify="right")
     for title, _, cells in tables.quantity_rows(comparison):

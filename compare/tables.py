@@ -59,9 +59,12 @@ def headlines(comparison: Comparison) -> list[Headline]:
         ends = dict.fromkeys(wording.number(end) for end in (means.min(), means.max()))
         span = f"{' to '.join(ends)} {quantity.unit}"
     verdict = comparison.verdict
-    needed = seeds_text(verdict.seeds_needed) if comparison.results else "the case has no checks"
+    needed = seeds_text(verdict.seeds_needed) if comparison.results else "no pair was checked"
+    bar, time = comparison.case.resolved["bar"], comparison.case.resolved["time"]
+    deepest_cm = 100 * bar["speed_m_s"] * time["penetration_s"]
+    window = f"mean resistance from {resistance.DEEP_FROM * deepest_cm:.3g} to {deepest_cm:.3g} cm"
     return [
-        Headline(span, "mean resistance", by_engine or "no run finished"),
+        Headline(span, window, by_engine or "no run finished"),
         _largest_difference(comparison),
         Headline(
             wording.plural(verdict.seeds if comparison.results else len(comparison.seeds), "seed"),

@@ -45,8 +45,11 @@ def decide(
     engines: Sequence[str],
     results: Sequence[CheckResult],
     failures: dict[tuple[str, int], str],
+    failed_gates: Sequence[str] = (),
 ) -> Verdict:
     """The verdict: a difference weighs more than an engine without result, and that more than an open question.
+
+    `failed_gates` are lines that name the run and the gate.
 
     The smoke tier is a comparison of fewer seeds than a statement of equivalence needs: there, nothing outside the
     alarm band is as much as can be said, and it is called CONSISTENT, never AGREES.
@@ -60,12 +63,14 @@ def decide(
         word, sentence, next_step = DIFFERS, *_differs(results)
     elif failures:
         word, sentence, next_step = ENGINE_FAILED, *_failed(failures)
+    elif not results and failed_gates:
+        word, sentence, next_step = INCONCLUSIVE, *_not_comparable(failed_gates[0])
     elif not results:
         word, sentence, next_step = INCONCLUSIVE, *_nothing_to_compare(engines)
     elif checks.NOT_COMPARABLE in outcomes:
-        word, sentence, next_step = INCONCLUSIVE, *_not_comparable(results)
+        word, sentence, next_step = INCONCLUSIVE, *_not_comparable(_first_obstacle(results))
     elif smoke:
-        word, sentence, next_step = CONSISTENT, *_consistent(engines, seeds, needed)
+        word, sentence, next_step = CONSISTENT, *_consistent(engines, results, seeds, needed)
     elif all(outcome == checks.AGREES for outcome in outcomes):
         word, sentence, next_step = AGREES, *_agrees(engines, results, seeds)
     else:
@@ -115,11 +120,16 @@ def _nothing_to_compare(engines) -> tuple[str, str]:
     )
 
 
-def _not_comparable(results) -> tuple[str, str]:
-    first = next(result for result in results if result.outcome == checks.NOT_COMPARABLE)
-    sentence = f"Not comparable: {first.obstacles[0].rstrip('.')}."
+def _first_obstacle(results) -> str:
+    return next(
+        result.obstacles[0] for result in results if result.outcome == checks.NOT_COMPARABLE
+    )
+
+
+def _not_comparable(obstacle: str) -> tuple[str, str]:
+    told = obstacle.replace("not comparable: ", "").rstrip(".")  # once is enough
     return (
-        sentence,
+        f"Not comparable: {told}.",
         "See the gates and the missing runs; a bed that does not rest usually does at a smaller time step "
         "(engines.NAME.step_s).",
     )
@@ -134,11 +144,13 @@ def _agrees(engines, results, seeds) -> tuple[str, str]:
     return sentence, "Vary the case (--set key=value) to see how far the agreement reaches."
 
 
-def _consistent(engines, seeds, needed) -> tuple[str, str]:
+def _consistent(engines, results, seeds, needed) -> tuple[str, str]:
+    still_open = sum(result.outcome == checks.INCONCLUSIVE for result in results)
     sentence = (
-        f"{_names(engines)} show no difference: every gate passed, and nothing lies outside the alarm band of "
-        f"{checks.ALARM_SCATTERS} seed-to-seed standard deviations. This is no statement of equivalence: "
-        f"it needs {seeds_text(needed)}, here {'is' if seeds == 1 else 'are'} {seeds}."
+        f"{_names(engines)} show no alarming difference: every gate passed, and nothing lies outside the alarm band "
+        f"of {checks.ALARM_SCATTERS} seed-to-seed standard deviations. This is no statement of equivalence: "
+        f"{still_open} of {plural(len(results), 'check')} are still open. It needs {seeds_text(needed)}, here "
+        f"{'is' if seeds == 1 else 'are'} {seeds}."
     )
     if needed is None:
         return sentence, "Widen the margins that no reasonable number of seeds can meet."

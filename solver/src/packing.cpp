@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <sstream>
 
 #include "crossdem/simulation.hpp"
 
@@ -80,9 +81,12 @@ Packing make_packing(const Case& setup, std::uint64_t seed) {
     simulation.check();
     energy = kinetic_energy(simulation.particles());
     if (elapsed() > setup.packing.longest_settling) {
-      throw SimulationError("the bed of seed " + std::to_string(seed) +
-                            " did not settle: its kinetic energy is still " + std::to_string(energy * 1e9) +
-                            " nJ; try a smaller packing.step_s");
+      std::ostringstream message;
+      message << "the bed of seed " << seed << " did not settle: after " << elapsed()
+              << " s its kinetic energy is still " << energy
+              << " J, above packing.kinetic_energy_J = " << setup.packing.kinetic_energy
+              << "; try a smaller packing.step_s than " << settling.time.step;
+      throw SimulationError(message.str());
     }
   } while (elapsed() < setup.packing.settling || energy >= setup.packing.kinetic_energy);
 

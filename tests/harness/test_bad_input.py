@@ -129,7 +129,7 @@ def test_a_check_of_no_known_quantity(refused, write):
 
 def test_text_that_is_not_toml_is_told_with_line_and_column(refused, write):
     said = refused(write("schema_version = 1", "schema_version = "))
-    assert re.search(r"case\.toml:\d+:18: Invalid value", said)
+    assert re.search(r"case\.toml:\d+:18: not valid TOML: Invalid value", said)
 
 
 def test_text_that_ends_too_early_is_told_with_line_and_column(refused, tmp_path):

@@ -128,6 +128,14 @@ def test_a_case_without_checks_is_inconclusive():
     assert "no checks" in said.sentence
 
 
+def test_a_failed_gate_is_named_even_where_one_engine_is_alone():
+    agitated = synthetic.dataset(RUN_CASE, "native", 1, failed_gate=NOT_AT_REST)
+    said = compare_runs(RUN_CASE, [agitated]).verdict
+    assert (said.word, said.exit_code) == (verdict.INCONCLUSIVE, ExitCode.INCONCLUSIVE)
+    assert NOT_AT_REST.removeprefix("not comparable: ") in said.sentence
+    assert said.sentence.lower().count("not comparable") == 1
+
+
 def test_runs_from_different_packings_are_not_comparable():
     other = synthetic.dataset(RUN_CASE, "yade", packing_hash="0" * 64)
     comparison = compare_runs(RUN_CASE, [synthetic.dataset(RUN_CASE), other])
