@@ -49,6 +49,11 @@ def _values(comparison: Comparison) -> dict:
         "profile_rows": tables.profile_rows(comparison),
         "quantity_rows": tables.quantity_rows(comparison),
         "check_blocks": tables.check_blocks(comparison),
+        "gate_names": list(
+            dict.fromkeys(
+                gate["name"] for run in comparison.datasets for gate in run.manifest["gates"]
+            )
+        ),
         "limitations": {
             engine: comparison.of(engine)[0].manifest["limitations"]
             for engine in comparison.engines
