@@ -45,8 +45,11 @@ class Dataset:
     def seed(self) -> int:
         return self.manifest["seed"]
 
-    def write(self, folder: Path, extra_files_from: Path | None = None) -> None:
-        """Write into the new `folder`, whole or not at all, with a copy of all in `extra_files_from` (inputs, log).
+    def write(
+        self, folder: Path, extra_files_from: Path | None = None, without: str | None = None
+    ) -> None:
+        """Write into the new `folder`, whole or not at all, with a copy of `extra_files_from` (inputs, log) `without`
+        the entries of that name.
 
         It is written beside, forced to the disk and renamed: a kill leaves nothing that looks complete.
         """
@@ -54,27 +57,33 @@ class Dataset:
         folder.parent.mkdir(parents=True, exist_ok=True)
         partial = folder.with_name(f".{folder.name}.partial")
         shutil.rmtree(partial, ignore_errors=True)
-        if extra_files_from is None:
-            partial.mkdir()
-        else:
-            shutil.copytree(extra_files_from, partial)
-        box_m = (self.case["container"]["width_m"], self.case["container"]["height_m"])
+        try:
+            if extra_files_from is None:
+                partial.mkdir()
+            else:
+                left_out = shutil.ignore_patterns(*filter(None, [without]))
+                shutil.copytree(extra_files_from, partial, ignore=left_out)
+            self._write_files(partial)
+            _force_to_disk(partial)
+            os.rename(partial, folder)  # refuses a folder that is there and not empty
+        except OSError:
+            shutil.rmtree(partial, ignore_errors=True)
+            raise
+        _sync(folder.parent)
+
+    def _write_files(self, folder: Path) -> None:
         write_motion(
-            partial / "motion.h5",
+            folder / "motion.h5",
             self.motion,
             self.radius_m,
             self.engine,
             self.manifest["engine_version"],
-            box_m=box_m,
+            box_m=(self.case["container"]["width_m"], self.case["container"]["height_m"]),
             time_step_s=self.manifest["time_step_s"],
         )
-        self.resistance.to_csv(
-            partial / "resistance.csv", index=False
-        )  # shortest digits that read back the same
-        self._write_manifest(partial / "manifest.json")
-        _force_to_disk(partial)
-        os.rename(partial, folder)  # refuses a folder that is there and not empty
-        _sync(folder.parent)
+        # to_csv writes the shortest digits that read back the same
+        self.resistance.to_csv(folder / "resistance.csv", index=False)
+        self._write_manifest(folder / "manifest.json")
 
     def write_manifest(self, folder: Path) -> None:
         """Replace the manifest of this run's `folder`, at once."""

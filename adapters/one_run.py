@@ -94,10 +94,9 @@ class Run:
         """Put the finished run in its place. Raises OSError."""
         for name in self.engine.kept_output:
             if (self.work_dir / OUTPUT / name).exists():
-                (self.work_dir / OUTPUT / name).rename(self.work_dir / name)
-        shutil.rmtree(self.work_dir / OUTPUT)
+                shutil.copyfile(self.work_dir / OUTPUT / name, self.work_dir / name)
         shutil.rmtree(self.folder, ignore_errors=True)  # whatever is there could not be reused
-        dataset.write(self.folder, extra_files_from=self.work_dir)
+        dataset.write(self.folder, extra_files_from=self.work_dir, without=OUTPUT)
         self.discard()
 
     def put_aside(self, reason: str) -> str:

@@ -1,5 +1,6 @@
 """Running engines: what ends well, what ends badly and is said as what it is, and what a second call makes of it."""
 
+import errno
 import os
 import re
 import shutil
@@ -165,6 +166,21 @@ def test_a_failed_run_is_tried_again_and_its_remains_go_when_it_succeeds(
     fake.fault("none")
     assert liggghts(case, packing, tmp_path / "out").status == "done"
     assert names_in(tmp_path / "out" / "failed") == []
+
+
+def test_a_dataset_that_cannot_be_written_costs_nothing_of_what_the_engine_wrote(
+    fake, case, packing, tmp_path, monkeypatch
+):
+    def full_disk(dataset, folder):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Dataset, "_write_files", full_disk)
+    result = liggghts(case, packing, tmp_path / "out")
+    assert result.status == "failed"
+    assert "its dataset cannot be written" in result.failure and "No space left" in result.failure
+    assert names_in(tmp_path / "out" / "runs") == []
+    [remains] = (tmp_path / "out" / "failed").iterdir()
+    assert names_in(remains / "output") == ["frames.txt", "samples.txt"]
 
 
 def test_progress_grows_to_one(fake, case, packing, tmp_path):
