@@ -125,10 +125,12 @@ class Reader {
     enter(key, entry != nullptr ? *entry : empty, body);
   }
 
+  /// Entries of `fallbacks` that are not named are there all the same.
   template <class Value, std::invocable<Value&> Body>
-  void optional_map(const std::string& key, std::map<std::string, Value>& values, Body body) {
+  void optional_map(const std::string& key, std::map<std::string, Value>& values,
+                    const std::map<std::string, Value>& fallbacks, Body body) {
     const auto* entry = find(key, true);
-    if (entry == nullptr) return;
+    if (entry == nullptr) return void(values = fallbacks);
     enter(key, *entry, [&] {
       for (const auto& item : entry->items()) {
         find(item.key(), true);
@@ -138,6 +140,7 @@ class Reader {
           enter(item.key(), item.value(), [&] { body(values[item.key()]); });
       }
     });
+    values.insert(fallbacks.begin(), fallbacks.end());
   }
 
   template <class Value, std::invocable<Value&> Body>

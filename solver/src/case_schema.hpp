@@ -100,7 +100,8 @@ void root(Visitor& v, Case& c) {
     v.number("frame_interval_s", c.time.frame_interval, Range::positive, 1000 * c.time.step);
     v.boolean("allow_above_eq32", c.time.allow_above_eq32, false);
   });
-  v.optional_map("engines", c.engines,
+  const EngineSettings conventional{c.time.step / 2};  // below the packed-bed limit where the paper scheme is, too
+  v.optional_map("engines", c.engines, {{"liggghts", conventional}, {"yade", conventional}},
                  [&](EngineSettings& engine) { v.number("step_s", engine.step, Range::positive); });
   v.optional_group("packing", [&] {
     const auto& diameters = c.particles.diameters;

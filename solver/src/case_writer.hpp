@@ -42,7 +42,8 @@ class Writer {
   }
 
   template <class Value, class Body>
-  void optional_map(const std::string& key, std::map<std::string, Value>& values, Body body) {
+  void optional_map(const std::string& key, std::map<std::string, Value>& values, const std::map<std::string, Value>&,
+                    Body body) {
     group(key, [&] {
       for (auto& entry : values) group(entry.first, [&] { body(entry.second); });
     });

@@ -1,0 +1,106 @@
+#include "contradictions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <sstream>
+
+namespace crossdem {
+namespace {
+
+constexpr double most_steps = 1e9;               // in an interval: far above any use, far below what a long counts
+constexpr double densest_disc_packing = 0.9069;  // pi / sqrt(12)
+
+bool is_multiple(double interval, double step) {
+  const double ratio = interval / step;
+  return ratio >= 0.5 && ratio <= most_steps && std::abs(ratio - std::round(ratio)) <= 1e-9 * ratio;
+}
+
+}  // namespace
+
+std::string short_text(double value) {
+  std::ostringstream out;
+  out.precision(4);
+  out << value;
+  return out.str();
+}
+
+std::vector<std::string> contradictions(const Case& c) {
+  std::vector<std::string> faults;
+  const auto fault = [&](const std::string& key, const std::string& message) {
+    faults.push_back(key + ": " + message);
+  };
+
+  const double left = c.bar.centre_x - c.bar.width / 2;
+  const double right = c.bar.centre_x + c.bar.width / 2;
+  if (c.bar.width >= c.container.width) {
+    fault("bar.width_m", "a bar of " + short_text(c.bar.width) + " m does not go into a container of " +
+                             short_text(c.container.width) + " m");
+  } else if (left < 0.0 || right > c.container.width) {
+    fault("bar.centre_x_m", "the bar reaches from " + short_text(left) + " to " + short_text(right) +
+                                " m, out of the container of " + short_text(c.container.width) + " m");
+  }
+
+  const ParticleMix& mix = c.particles;
+  if (mix.diameters.size() != mix.number_shares.size()) {
+    fault("particles.number_shares", "must have as many entries as particles.diameters_m");
+  } else {
+    if (std::abs(std::accumulate(mix.number_shares.begin(), mix.number_shares.end(), 0.0) - 1.0) > 1e-9)
+      fault("particles.number_shares", "must add up to 1");
+    double area = 0.0;
+    for (std::size_t k = 0; k < mix.diameters.size(); ++k)
+      area += mix.count * mix.number_shares[k] * std::numbers::pi / 4 * mix.diameters[k] * mix.diameters[k];
+    const double least_height = area / (densest_disc_packing * c.container.width);
+    if (least_height > c.container.height) {
+      fault("particles.count", "the bed does not fit: it would be at least " + short_text(least_height) +
+                                   " m high in a container of " + short_text(c.container.height) + " m");
+    }
+  }
+
+  const double largest = *std::max_element(mix.diameters.begin(), mix.diameters.end());
+  const double gap = c.packing.lattice_spacing - largest;
+  if (gap < 0.0)
+    fault("packing.lattice_spacing_m", "is below the largest diameter: particles would overlap");
+  else if (c.packing.jitter > gap / 2 * (1 + 1e-9))
+    fault("packing.jitter_m", "is more than half the gap of the lattice: particles would overlap");
+  if (largest + 2 * c.packing.jitter > c.container.width)
+    fault("particles.diameters_m", "the largest particle does not go into the container");
+
+  const auto check_interval = [&](const char* key, double interval, double step, const std::string& step_key) {
+    if (!is_multiple(interval, step))
+      fault(key, short_text(interval) + " s is not a whole number, up to 1e9, of " + step_key + " = " +
+                     short_text(step) + " s");
+  };
+  const auto check_limit = [&](const std::string& key, double step) {
+    const double limit = eq32_time_step(c);
+    if (step > limit && !c.time.allow_above_eq32) {
+      fault(key, short_text(step) + " s is above the limit of Eq. (32), 0.75 sqrt(m/k) = " + short_text(limit) +
+                     " s; if that is on purpose set time.allow_above_eq32 = true");
+    }
+  };
+  const auto check_step = [&](const std::string& key, double step) {
+    check_limit(key, step);
+    check_interval("time.sample_interval_s", c.time.sample_interval, step, key);
+    check_interval("time.frame_interval_s", c.time.frame_interval, step, key);
+    if (c.time.rest > 0.0) check_interval("time.rest_s", c.time.rest, step, key);
+  };
+  check_step("time.step_s", c.time.step);
+  for (const auto& [name, engine] : c.engines) check_step("engines." + name + ".step_s", engine.step);
+  check_interval("time.penetration_s", c.time.penetration, c.time.sample_interval, "time.sample_interval_s");
+  check_interval("time.penetration_s", c.time.penetration, c.time.frame_interval, "time.frame_interval_s");
+  if (c.packing.step != c.time.step) check_limit("packing.step_s", c.packing.step);
+  if (c.packing.settling > c.packing.longest_settling)
+    fault("packing.settling_s", "is longer than packing.longest_settling_s");
+  const double way = c.bar.speed * c.time.penetration;
+  if (way >= c.container.height) {
+    fault("time.penetration_s",
+          "the bar would go " + short_text(way) + " m deep in a container of " + short_text(c.container.height) + " m");
+  } else if (c.bar.length < way) {
+    fault("bar.length_m",
+          "the bar is shorter than its way of " + short_text(way) + " m: particles would close over it");
+  }
+  return faults;
+}
+
+}  // namespace crossdem

@@ -1,0 +1,49 @@
+// What limits the time step: Eq. (32), and the packed bed.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contradictions.hpp"
+
+namespace crossdem {
+namespace {
+
+double smallest_mass(const Case& c) {
+  return c.disc_mass(*std::min_element(c.particles.diameters.begin(), c.particles.diameters.end()) / 2);
+}
+
+}  // namespace
+
+std::vector<std::string> warnings(const Case& resolved) {
+  std::vector<std::string> found;
+  const auto compare = [&](const std::string& key, double step, double gain, const char* integrator) {
+    const double limit = packed_bed_time_step(resolved, gain);
+    if (step > limit) {
+      found.push_back(key + " = " + short_text(step) + " s is above the packed-bed limit of " + integrator + ", " +
+                      short_text(limit) + " s: expect a bed that does not rest");
+    }
+  };
+  // The averaged displacement gains its stability from what the dashpots see.
+  const bool filtered = resolved.scheme.readings.dashpot_velocity == DashpotVelocity::averaged_displacement;
+  const double gain = filtered ? averaged_displacement_gain : conventional_gain;
+  const char* scheme = filtered ? "the paper's averaged displacement" : "the paper's scheme with true velocities";
+  compare("time.step_s", resolved.time.step, gain, scheme);
+  if (resolved.packing.step != resolved.time.step) compare("packing.step_s", resolved.packing.step, gain, scheme);
+  for (const auto& [name, engine] : resolved.engines)
+    compare("engines." + name + ".step_s", engine.step, conventional_gain, "a conventional integrator");
+  return found;
+}
+
+double eq32_time_step(const Case& resolved) {
+  const double stiffness =
+      std::max(resolved.particle_particle.normal_stiffness, resolved.particle_wall.normal_stiffness);
+  return 0.75 * std::sqrt(smallest_mass(resolved) / stiffness);
+}
+
+double packed_bed_time_step(const Case& resolved, double gain) {
+  const double damping = std::max(resolved.particle_particle.shear_damping, resolved.particle_wall.shear_damping);
+  return damping > 0.0 ? gain * smallest_mass(resolved) / (16 * damping) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace crossdem
