@@ -41,9 +41,8 @@ class Workspace:
         """Undoes the constructor: for a fault that shows only after it, before there are results."""
         if self._is_new:
             (self.root / _MARKER).unlink(missing_ok=True)
-            shutil.rmtree(
-                self.root / "packings", ignore_errors=True
-            )  # new like all the rest, so it is ours
+            # New like all the rest, so what lies in it is ours.
+            shutil.rmtree(self.root / "packings", ignore_errors=True)
             self._remove_created()
 
     def _create_folders(self) -> None:

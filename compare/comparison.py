@@ -11,13 +11,12 @@ import pandas as pd
 
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.engines import ENGINES
 from crossdem.adapters.gates import REFERENCE, contacts_at_rest, with_contacts_gate
 
 from .checks import Check, CheckResult, check_faults, evaluate
 from .quantities import endpoints, unknown_quantities
 from .verdict import Verdict, decide
-
-ENGINE_ORDER = ("native", "liggghts", "yade")  # everywhere; others follow by name
 
 
 class ComparisonError(Exception):
@@ -132,7 +131,8 @@ def comparison_faults(case: Case, datasets: Sequence[Dataset]) -> list[str]:
 
 
 def in_order(engines: Iterable[str]) -> tuple[str, ...]:
-    rank = {engine: number for number, engine in enumerate(ENGINE_ORDER)}
+    """As ENGINES has them, everywhere; others follow by name."""
+    rank = {engine: number for number, engine in enumerate(ENGINES)}
     return tuple(sorted(engines, key=lambda engine: (rank.get(engine, len(rank)), engine)))
 
 

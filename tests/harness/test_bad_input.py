@@ -236,6 +236,17 @@ def test_a_fault_that_shows_only_while_settling_leaves_nothing(tmp_path, exists)
     assert not any(out.iterdir()) if exists else not out.parent.exists()
 
 
+def test_a_fault_of_one_bed_takes_the_other_beds_along(tmp_path):
+    solver = tmp_path / "solver"
+    refuse = '[ "$3" = --seed=2 ] && { sleep 3; echo "case: packing: a fault" >&2; exit 2; }'
+    solver.write_text(f'#!/bin/sh\n{refuse}\nexec {find_solver()} "$@"\n')
+    solver.chmod(0o755)
+    out = tmp_path / "out"
+    ended = crossdem("check", REFERENCE, "--out", out, CROSSDEM_SOLVER=str(solver))
+    assert ended.returncode == 2 and "a fault" in ended.stderr
+    assert not out.exists()
+
+
 def test_a_folder_that_is_no_dataset(tmp_path):
     ended = crossdem("compare", tmp_path, cwd=tmp_path)
     assert ended.returncode == 2

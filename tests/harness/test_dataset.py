@@ -111,6 +111,12 @@ def test_a_manifest_of_another_schema_or_another_count_is_refused(whole):
         spoil(whole, manifest=whole.manifest | {"frames": 90})
 
 
+@pytest.mark.parametrize("gates", [{}, ["passed"], [{"name": "contacts_share", "passed": True}]])
+def test_a_manifest_whose_gates_are_no_gates_is_refused(whole, gates):
+    with pytest.raises(DatasetError, match="gates are not a list of objects with limit, message"):
+        spoil(whole, manifest=whole.manifest | {"gates": gates})
+
+
 def test_every_fault_of_a_kind_is_told_at_once(whole):
     table = with_cell(with_cell(whole.resistance, "force_x_N", np.nan), "depth_m", np.nan)
     with pytest.raises(DatasetError, match="depth_m is not finite.*; .*force_x_N is not finite"):

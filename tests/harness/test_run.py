@@ -119,6 +119,14 @@ def test_a_missing_engine_says_what_to_install(case, packing, tmp_path, monkeypa
     assert "apt install liggghts" in result.failure
 
 
+def test_a_program_that_cannot_say_its_version_is_a_missing_engine(case, packing, tmp_path, fake):
+    program = Path(shutil.which("liggghts"))
+    program.write_bytes(b"no program")  # executable, and of no format that the system knows
+    result = liggghts(case, packing, tmp_path / "out")
+    assert result.status == "missing"
+    assert "does not say its version" in result.failure
+
+
 def test_a_case_beyond_an_engine_is_not_run(fake, packing, tmp_path):
     result = liggghts(small_case("time.rest_s=0.0"), packing, tmp_path / "out")
     assert result.status == "unsupported"
@@ -212,6 +220,17 @@ def test_a_reused_run_gets_the_gate_that_a_later_native_run_allows(fake, case, p
     assert names == ["rest_kinetic_energy_J", "contacts_share", "no_particle_lost"]
     assert len(first.manifest["gates"]) == 2
     assert len(fake.process_ids()) == 1
+
+
+def test_a_reused_run_keeps_its_gate_on_contacts_when_it_is_asked_for_without_native(
+    fake, case, packing, tmp_path
+):
+    requests = [RunRequest(case, packing, name) for name in ("liggghts", "native")]
+    before = Dataset.read(run_all(requests, tmp_path / "out", 2)[0].dataset_folder)
+    alone = liggghts(case, packing, tmp_path / "out")
+    assert alone.status == "reused"
+    gates = Dataset.read(alone.dataset_folder).manifest["gates"]
+    assert gates == before.manifest["gates"] and len(gates) == 3
 
 
 def test_ctrl_c_ends_the_engines_and_leaves_no_run(fake, case, packing, tmp_path):
