@@ -17,6 +17,8 @@ class Bar {
   Bar(const BarGeometry& geometry, double tip) : geometry_(geometry), start_(tip), tip_(tip) {}
 
   void start() { moving_ = true; }
+  [[nodiscard]] bool moving() const { return moving_; }
+  [[nodiscard]] double speed() const { return geometry_.speed; }  // [m/s], downwards, once moving
 
   /// Moves the bar by one step, once it has been started.
   void advance(double dt) {

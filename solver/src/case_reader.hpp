@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,18 +34,26 @@ class Reader {
     }
   }
 
-  void numbers(const std::string& key, std::vector<double>& values, Range range) {
-    const auto* entry = find(key, false);
-    if (entry == nullptr) return;
+  void numbers(const std::string& key, std::vector<double>& values, Range range,
+               const std::optional<std::vector<double>>& fallback = std::nullopt) {
+    const auto* entry = find(key, fallback.has_value());
+    if (entry == nullptr) {
+      if (fallback) values = *fallback;
+      return;
+    }
     if (!entry->is_array() || entry->empty()) return fault(key, "must be a list of numbers, is " + shown(*entry));
     values.assign(entry->size(), 0.0);
     for (std::size_t k = 0; k < values.size(); ++k)
       read_number(key + "[" + std::to_string(k) + "]", (*entry)[k], values[k], range);
   }
 
-  void integer(const std::string& key, int& value, int lowest, int highest) {
-    const auto* entry = find(key, false);
-    if (entry == nullptr) return;
+  void integer(const std::string& key, int& value, int lowest, int highest,
+               std::optional<int> fallback = std::nullopt) {
+    const auto* entry = find(key, fallback.has_value());
+    if (entry == nullptr) {
+      if (fallback) value = *fallback;
+      return;
+    }
     const auto within = [&](auto n) { return std::cmp_greater_equal(n, lowest) && std::cmp_less_equal(n, highest); };
     const bool good = entry->is_number_unsigned()  ? within(entry->get<std::uint64_t>())
                       : entry->is_number_integer() ? within(entry->get<std::int64_t>())
@@ -75,16 +84,16 @@ class Reader {
     value = entry->get<std::string>();
   }
 
-  /// A text that may name files and columns: letters, digits and underscores only.
+  /// A text that may name files and columns: letters, digits, underscores and inner dashes only.
   void identifier(const std::string& key, std::string& value) {
     const auto* entry = find(key, false);
     if (entry == nullptr) return;
     if (!entry->is_string() || !is_identifier(entry->get_ref<const std::string&>()))
-      return fault(key, "must consist of 1 to 64 letters, digits and underscores, is " + shown(*entry));
+      return fault(key, "must consist of 1 to 64 letters, digits, underscores and dashes, is " + shown(*entry));
     value = entry->get<std::string>();
   }
 
-  void one_of(const std::string& key, std::string& value, std::initializer_list<std::string_view> allowed) {
+  void one_of(const std::string& key, std::string& value, std::span<const std::string_view> allowed) {
     value = *allowed.begin();
     const auto* entry = find(key, true);
     if (entry == nullptr) return;
@@ -125,6 +134,13 @@ class Reader {
     enter(key, entry != nullptr ? *entry : empty, body);
   }
 
+  /// A table that may be left out: there is then none.
+  template <class Part, std::invocable<Part&> Body>
+  void optional_part(const std::string& key, std::optional<Part>& part, Body body) {
+    const auto* entry = find(key, true);
+    if (entry != nullptr) enter(key, *entry, [&] { body(part.emplace()); });
+  }
+
   /// Entries of `fallbacks` that are not named are there all the same.
   template <class Value, std::invocable<Value&> Body>
   void optional_map(const std::string& key, std::map<std::string, Value>& values,
@@ -135,7 +151,7 @@ class Reader {
       for (const auto& item : entry->items()) {
         find(item.key(), true);
         if (!is_identifier(item.key()))
-          fault(item.key(), "a name here must consist of 1 to 64 letters, digits and underscores");
+          fault(item.key(), "a name here must consist of 1 to 64 letters, digits, underscores and dashes");
         else
           enter(item.key(), item.value(), [&] { body(values[item.key()]); });
       }
@@ -161,7 +177,8 @@ class Reader {
 
  private:
   static bool is_identifier(const std::string& text) {
-    return !text.empty() && text.size() <= 64 && text.find_first_not_of(identifier_characters) == std::string::npos;
+    return !text.empty() && text.size() <= 64 && text.front() != '-' &&
+           text.find_first_not_of(identifier_characters) == std::string::npos;
   }
 
   /// The value as the user wrote it, shortened.
@@ -223,7 +240,7 @@ class Reader {
   }
 
   static constexpr const char* identifier_characters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
 
   const nlohmann::json* object_;
   std::string prefix_;

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,15 @@ class Writer {
   explicit Writer(nlohmann::json& root) : object_(&root) { root = nlohmann::json::object(); }
 
   void number(const char* key, double value, Range, double = 0.0) { (*object_)[key] = value; }
-  void numbers(const char* key, const std::vector<double>& values, Range) { (*object_)[key] = values; }
-  void integer(const char* key, int value, int, int) { (*object_)[key] = value; }
+  void numbers(const char* key, const std::vector<double>& values, Range,
+               const std::optional<std::vector<double>>& = std::nullopt) {
+    (*object_)[key] = values;
+  }
+  void integer(const char* key, int value, int, int, std::optional<int> = std::nullopt) { (*object_)[key] = value; }
   void boolean(const char* key, bool value, bool) { (*object_)[key] = value; }
   void text(const char* key, const std::string& value, const std::string& = {}) { (*object_)[key] = value; }
   void identifier(const char* key, const std::string& value) { (*object_)[key] = value; }
-  void one_of(const char* key, const std::string& value, std::initializer_list<std::string_view>) {
-    (*object_)[key] = value;
-  }
+  void one_of(const char* key, const std::string& value, std::span<const std::string_view>) { (*object_)[key] = value; }
   void version(const char* key, int value) { (*object_)[key] = value; }
 
   template <class Enum>
@@ -39,6 +41,11 @@ class Writer {
   template <class Body>
   void optional_group(const std::string& key, Body body) {
     group(key, body);
+  }
+
+  template <class Part, class Body>
+  void optional_part(const std::string& key, std::optional<Part>& part, Body body) {
+    if (part) group(key, [&] { body(*part); });
   }
 
   template <class Value, class Body>

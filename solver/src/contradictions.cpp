@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <sstream>
+
+#include "case_schema.hpp"
 
 namespace crossdem {
 namespace {
@@ -17,31 +20,29 @@ bool is_multiple(double interval, double step) {
   return ratio >= 0.5 && ratio <= most_steps && std::abs(ratio - std::round(ratio)) <= 1e-9 * ratio;
 }
 
-}  // namespace
+using Fault = std::function<void(const std::string& key, const std::string& message)>;
 
-std::string short_text(double value) {
-  std::ostringstream out;
-  out.precision(4);
-  out << value;
-  return out.str();
-}
-
-std::vector<std::string> contradictions(const Case& c) {
-  std::vector<std::string> faults;
-  const auto fault = [&](const std::string& key, const std::string& message) {
-    faults.push_back(key + ": " + message);
-  };
-
-  const double left = c.bar.centre_x - c.bar.width / 2;
-  const double right = c.bar.centre_x + c.bar.width / 2;
-  if (c.bar.width >= c.container.width) {
-    fault("bar.width_m", "a bar of " + short_text(c.bar.width) + " m does not go into a container of " +
+void bar_faults(const Case& c, const BarGeometry& bar, const Fault& fault) {
+  const double left = bar.centre_x - bar.width / 2;
+  const double right = bar.centre_x + bar.width / 2;
+  if (bar.width >= c.container.width) {
+    fault("bar.width_m", "a bar of " + short_text(bar.width) + " m does not go into a container of " +
                              short_text(c.container.width) + " m");
   } else if (left < 0.0 || right > c.container.width) {
     fault("bar.centre_x_m", "the bar reaches from " + short_text(left) + " to " + short_text(right) +
                                 " m, out of the container of " + short_text(c.container.width) + " m");
   }
+  const double way = bar.speed * c.time.penetration;
+  if (way >= c.container.height) {
+    fault("time.penetration_s",
+          "the bar would go " + short_text(way) + " m deep in a container of " + short_text(c.container.height) + " m");
+  } else if (bar.length < way) {
+    fault("bar.length_m",
+          "the bar is shorter than its way of " + short_text(way) + " m: particles would close over it");
+  }
+}
 
+void bed_faults(const Case& c, const Fault& fault) {
   const ParticleMix& mix = c.particles;
   if (mix.diameters.size() != mix.number_shares.size()) {
     fault("particles.number_shares", "must have as many entries as particles.diameters_m");
@@ -66,7 +67,23 @@ std::vector<std::string> contradictions(const Case& c) {
     fault("packing.jitter_m", "is more than half the gap of the lattice: particles would overlap");
   if (largest + 2 * c.packing.jitter > c.container.width)
     fault("particles.diameters_m", "the largest particle does not go into the container");
+  if (c.packing.settling > c.packing.longest_settling)
+    fault("packing.settling_s", "is longer than packing.longest_settling_s");
+}
 
+void placed_faults(const Case& c, const Fault& fault) {
+  const ParticleMix mix = schema::mix_of(c.placed);
+  if (c.particles.count != mix.count || c.particles.diameters != mix.diameters ||
+      c.particles.number_shares != mix.number_shares)
+    fault("particles", "count, diameters_m and number_shares follow from the [[particle]] tables: leave them out");
+  for (std::size_t k = 0; k < c.placed.size(); ++k) {
+    const PlacedParticle& particle = c.placed[k];
+    if (particle.x < 0.0 || particle.x > c.container.width || particle.y < 0.0)
+      fault("particle[" + std::to_string(k) + "]", "its centre is outside the container");
+  }
+}
+
+void time_faults(const Case& c, const Fault& fault) {
   const auto check_interval = [&](const char* key, double interval, double step, const std::string& step_key) {
     if (!is_multiple(interval, step))
       fault(key, short_text(interval) + " s is not a whole number, up to 1e9, of " + step_key + " = " +
@@ -89,17 +106,39 @@ std::vector<std::string> contradictions(const Case& c) {
   for (const auto& [name, engine] : c.engines) check_step("engines." + name + ".step_s", engine.step);
   check_interval("time.penetration_s", c.time.penetration, c.time.sample_interval, "time.sample_interval_s");
   check_interval("time.penetration_s", c.time.penetration, c.time.frame_interval, "time.frame_interval_s");
-  if (c.packing.step != c.time.step) check_limit("packing.step_s", c.packing.step);
-  if (c.packing.settling > c.packing.longest_settling)
-    fault("packing.settling_s", "is longer than packing.longest_settling_s");
-  const double way = c.bar.speed * c.time.penetration;
-  if (way >= c.container.height) {
-    fault("time.penetration_s",
-          "the bar would go " + short_text(way) + " m deep in a container of " + short_text(c.container.height) + " m");
-  } else if (c.bar.length < way) {
-    fault("bar.length_m",
-          "the bar is shorter than its way of " + short_text(way) + " m: particles would close over it");
-  }
+  if (c.placed.empty() && c.packing.step != c.time.step) check_limit("packing.step_s", c.packing.step);
+}
+
+void scheme_faults(const SchemeChoice& scheme, const Fault& fault) {
+  if (scheme.name != "paper" && scheme.readings != Readings{})
+    fault("scheme.name",
+          "the scheme \"" + scheme.name + "\" has readings of its own: leave the others at their defaults");
+  if (scheme.readings.update_order == UpdateOrder::in_turn &&
+      scheme.readings.integrator == Integration::velocity_verlet)
+    fault("scheme.integrator", "velocity_verlet moves all particles before all forces: it cannot go in_turn");
+}
+
+}  // namespace
+
+std::string short_text(double value) {
+  std::ostringstream out;
+  out.precision(4);
+  out << value;
+  return out.str();
+}
+
+std::vector<std::string> contradictions(const Case& c) {
+  std::vector<std::string> faults;
+  const Fault fault = [&](const std::string& key, const std::string& message) {
+    faults.push_back(key + ": " + message);
+  };
+  if (c.bar) bar_faults(c, *c.bar, fault);
+  if (c.placed.empty())
+    bed_faults(c, fault);
+  else
+    placed_faults(c, fault);
+  time_faults(c, fault);
+  scheme_faults(c.scheme, fault);
   return faults;
 }
 

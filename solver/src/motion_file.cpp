@@ -37,7 +37,7 @@ using Shape = std::vector<hsize_t>;
 
 struct MotionFile::File {
   File(std::filesystem::path at, const Case& setup, const Particles& particles);
-  void frame(long step, double time, double bar_tip, const Particles& particles);
+  void frame(long step, double time, std::optional<double> bar_tip, const Particles& particles);
 
  private:
   void require(herr_t status) const {
@@ -152,10 +152,10 @@ MotionFile::File::File(std::filesystem::path at, const Case& setup, const Partic
   element("/particles/soil/velocity", "m s-1", {particle_count, 2});
   element("/particles/soil/angle", "rad", {particle_count});
   element("/particles/soil/angular_velocity", "rad s-1", {particle_count});
-  element("/observables/bar/tip", "m", {});
+  if (setup.bar) element("/observables/bar/tip", "m", {});
 }
 
-void MotionFile::File::frame(long step, double time, double bar_tip, const Particles& particles) {
+void MotionFile::File::frame(long step, double time, std::optional<double> bar_tip, const Particles& particles) {
   static_assert(sizeof(Vector2) == 2 * sizeof(double), "positions are written as pairs of doubles");
   const std::int64_t step_number = step;
   append("/particles/soil/position/step", H5T_NATIVE_INT64, {}, &step_number);
@@ -164,7 +164,7 @@ void MotionFile::File::frame(long step, double time, double bar_tip, const Parti
   append("/particles/soil/velocity/value", H5T_NATIVE_DOUBLE, {particle_count, 2}, particles.velocity.data());
   append("/particles/soil/angle/value", H5T_NATIVE_DOUBLE, {particle_count}, particles.angle.data());
   append("/particles/soil/angular_velocity/value", H5T_NATIVE_DOUBLE, {particle_count}, particles.spin.data());
-  append("/observables/bar/tip/value", H5T_NATIVE_DOUBLE, {}, &bar_tip);
+  if (bar_tip) append("/observables/bar/tip/value", H5T_NATIVE_DOUBLE, {}, &*bar_tip);
   ++frames;
   require(H5Fflush(file, H5F_SCOPE_GLOBAL));
 }
@@ -173,7 +173,7 @@ MotionFile::MotionFile(const std::filesystem::path& path, const Case& setup, con
     : file_(std::make_unique<File>(path, setup, particles)) {}
 MotionFile::~MotionFile() = default;
 
-void MotionFile::frame(long step, double time, double bar_tip, const Particles& particles) {
+void MotionFile::frame(long step, double time, std::optional<double> bar_tip, const Particles& particles) {
   file_->frame(step, time, bar_tip, particles);
 }
 

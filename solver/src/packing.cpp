@@ -5,7 +5,10 @@
 #include <random>
 #include <sstream>
 
+#include "bar.hpp"
 #include "crossdem/simulation.hpp"
+#include "neighbours.hpp"
+#include "text_file.hpp"
 
 namespace crossdem {
 namespace {
@@ -63,12 +66,54 @@ Particles jittered_lattice(const Case& setup, std::uint64_t seed) {
   return particles;
 }
 
+void place_bar(const Case& setup, Packing& packing) {
+  if (!setup.bar) return;
+  const double touching = touching_height(*setup.bar, packing.radius, packing.position);
+  packing.bar_tip = setup.bar->tip > 0.0 ? setup.bar->tip : touching;
+  check_bar_is_clear(setup, *packing.bar_tip, packing.position);
+  check_bar_stays_above_floor(setup, *packing.bar_tip);
+}
+
+/// [m], top of the highest particle.
+double height_of(const Packing& packing) {
+  double height = 0.0;
+  for (std::size_t i = 0; i < packing.radius.size(); ++i)
+    height = std::max(height, packing.position[i].y() + packing.radius[i]);
+  return height;
+}
+
+/// Beds settle by the paper's scheme with the readings of the case: one with a conventional integrator would not come
+/// to rest at the paper's time step, and those of the other schemes are best compared on the paper's beds.
+SchemeChoice settling_scheme(const SchemeChoice& choice) {
+  const bool settles = choice.name == "paper" && choice.readings.integrator == Integration::averaged_displacement;
+  return settles ? choice : SchemeChoice{.name = "paper", .readings = {}};
+}
+
+Packing placed_by_hand(const Case& setup, std::uint64_t seed) {
+  Packing packing;
+  packing.seed = seed;
+  for (const PlacedParticle& particle : setup.placed) {
+    packing.radius.push_back(particle.radius);
+    packing.position.emplace_back(particle.x, particle.y);
+    packing.velocity.emplace_back(particle.velocity_x, particle.velocity_y);
+    packing.spin.push_back(particle.angular_velocity);
+  }
+  place_bar(setup, packing);
+  const Particles particles = particles_of(packing, setup);
+  packing.contacts = close_pairs(particles, 0.0).size();
+  packing.kinetic_energy = kinetic_energy(particles);
+  packing.bed_height = height_of(packing);
+  return packing;
+}
+
 }  // namespace
 
 Packing make_packing(const Case& setup, std::uint64_t seed) {
+  if (!setup.placed.empty()) return placed_by_hand(setup, seed);
   Case settling = setup;
   settling.time.step = setup.packing.step;
   settling.particle_wall.friction = setup.packing.wall_friction;
+  settling.scheme = settling_scheme(setup.scheme);
   // The lattice is higher than the container; what falls from it may be faster than the container's height explains.
   const Particles lattice = jittered_lattice(setup, seed);
   settling.container.height = std::max(setup.container.height, 2 * lattice.position.back().y());
@@ -94,25 +139,36 @@ Packing make_packing(const Case& setup, std::uint64_t seed) {
   Packing packing{.seed = seed,
                   .radius = bed.radius,
                   .position = bed.position,
-                  .bar_tip = touching_height(setup.bar, bed.radius, bed.position),
+                  .velocity = std::vector<Vector2>(bed.count(), Vector2::Zero()),
+                  .spin = std::vector<double>(bed.count(), 0.0),
+                  .bar_tip = std::nullopt,
                   .contacts = simulation.contacts(),
                   .kinetic_energy = energy,
                   .settling = elapsed()};
-  for (std::size_t i = 0; i < bed.count(); ++i)
-    packing.bed_height = std::max(packing.bed_height, bed.position[i].y() + bed.radius[i]);
+  packing.bed_height = height_of(packing);
   if (packing.bed_height > setup.container.height) {
     throw CaseError({"particles.count: the bed does not fit: settled it is " + std::to_string(packing.bed_height) +
                      " m high in a container of " + std::to_string(setup.container.height) + " m"});
   }
-  check_bar_stays_above_floor(setup, packing.bar_tip);
+  place_bar(setup, packing);
   return packing;
 }
 
 void check_bar_stays_above_floor(const Case& setup, double bar_tip) {
-  const double way = setup.bar.speed * setup.time.penetration;
+  const double way = setup.bar->speed * setup.time.penetration;
   if (!(bar_tip > way)) {
     throw CaseError({"time.penetration_s: the bar starts at " + std::to_string(bar_tip) + " m and goes down by " +
                      std::to_string(way) + " m, through the floor; shorten the penetration"});
+  }
+}
+
+void check_bar_is_clear(const Case& setup, double bar_tip, const std::vector<Vector2>& position) {
+  const Bar bar(*setup.bar, bar_tip);
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    if (bar.contains(position[i])) {
+      throw CaseError({"bar.tip_m: with its bottom face at " + exact(bar_tip) + " m particle " + std::to_string(i) +
+                       " lies inside the bar"});
+    }
   }
 }
 
@@ -127,10 +183,12 @@ double touching_height(const BarGeometry& bar, const std::vector<double>& radius
   return height;
 }
 
-Particles at_rest(const Packing& packing, const Case& setup) {
+Particles particles_of(const Packing& packing, const Case& setup) {
   Particles particles;
-  for (std::size_t i = 0; i < packing.radius.size(); ++i)
-    particles.add(packing.radius[i], setup.disc_mass(packing.radius[i]), packing.position[i], Vector2::Zero());
+  for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+    particles.add(packing.radius[i], setup.disc_mass(packing.radius[i]), packing.position[i], packing.velocity[i]);
+    particles.spin[i] = packing.spin[i];
+  }
   return particles;
 }
 

@@ -13,14 +13,15 @@ std::string row_of(Numbers... numbers) {
 }  // namespace
 
 ResistanceFile::ResistanceFile(const std::filesystem::path& path) : file_(path) {
-  file_.line("time_s,depth_m,force_x_N,force_y_N,tip_force_y_N,shaft_force_y_N,contacts,kinetic_energy_J");
+  file_.line(
+      "time_s,depth_m,force_x_N,force_y_N,tip_force_y_N,shaft_force_y_N,floor_force_y_N,contacts,kinetic_energy_J");
 }
 
 void ResistanceFile::row(double time, double depth, const Simulation& simulation) {
   const BarForce force = simulation.bar_force();
   const Vector2 total = force.tip + force.shaft;
-  file_.line(row_of(time, depth, total.x(), total.y(), force.tip.y(), force.shaft.y()) + "," +
-             std::to_string(simulation.contacts()) + "," + exact(kinetic_energy(simulation.particles())));
+  file_.line(row_of(time, depth, total.x(), total.y(), force.tip.y(), force.shaft.y(), simulation.floor_force().y()) +
+             "," + std::to_string(simulation.contacts()) + "," + exact(kinetic_energy(simulation.particles())));
 }
 
 LedgerFile::LedgerFile(const std::filesystem::path& path) : file_(path) {

@@ -17,8 +17,8 @@ class MotionFile {
   MotionFile(const MotionFile&) = delete;
   MotionFile& operator=(const MotionFile&) = delete;
 
-  /// `step` since the bar started, `time` [s], `bar_tip` [m].
-  void frame(long step, double time, double bar_tip, const Particles& particles);
+  /// `step` and `time` [s] since the rest was over, `bar_tip` [m].
+  void frame(long step, double time, std::optional<double> bar_tip, const Particles& particles);
 
  private:
   struct File;

@@ -21,7 +21,7 @@ void run(const Case& setup, const Packing& packing, const std::filesystem::path&
   const long per_frame = steps_of(setup.time.frame_interval, dt);
   const long between_outputs = std::gcd(per_sample, per_frame);
 
-  Simulation simulation(setup, at_rest(packing, setup), packing.bar_tip);
+  Simulation simulation(setup, particles_of(packing, setup), packing.bar_tip);
   MotionFile motion(folder / "motion.h5", setup, simulation.particles());
   ResistanceFile resistance(folder / "resistance.csv");
   LedgerFile ledger(folder / "ledger.csv");
@@ -31,7 +31,8 @@ void run(const Case& setup, const Packing& packing, const std::filesystem::path&
     simulation.check();
   }
   const long rest_steps = simulation.steps();
-  simulation.start_bar();
+  if (setup.bar) simulation.start_bar();
+  const double bar_speed = setup.bar ? setup.bar->speed : 0.0;
 
   long frames = 0;
   long samples = 0;
@@ -40,7 +41,7 @@ void run(const Case& setup, const Packing& packing, const std::filesystem::path&
     // Times come from the count of intervals, not of steps: engines with other time steps must write the same times.
     if (step % per_sample == 0) {
       const double time = static_cast<double>(samples) * setup.time.sample_interval;
-      resistance.row(time, setup.bar.speed * time, simulation);
+      resistance.row(time, bar_speed * time, simulation);
       ledger.row(time, simulation);
       ++samples;
     }

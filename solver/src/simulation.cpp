@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
+#include "neighbours.hpp"
 #include "scheme.hpp"
 
 namespace crossdem {
 namespace {
-
-/// Neighbours within a fifth of the smallest diameter are listed: wide enough that lists last hundreds of steps in a
-/// bed that creeps, narrow enough that few pairs are looked at in vain.
-constexpr double skin_share = 0.2;
 
 /// Kinetic energy beyond this multiple of what motion and springs held at the start, and of what weight can give over
 /// the container's height, is no physics.
@@ -33,76 +31,64 @@ double moment_of_mass(const Particles& particles) {
 
 }  // namespace
 
+struct Simulation::State {
+  World world;
+  std::unique_ptr<Stepper> stepper;
+};
+
 Simulation::Simulation(const Case& setup, Particles particles, std::optional<double> bar_tip) {
   if (particles.count() == 0) throw std::invalid_argument("a simulation needs particles");
-  const double smallest = *std::min_element(particles.radius.begin(), particles.radius.end());
-  const bool in_turn = setup.scheme.readings.update_order == UpdateOrder::in_turn;
-  world_ = std::make_unique<World>(World{
-      .particles = std::move(particles),
-      .surfaces = {.width = setup.container.width, .bar = {}},
-      .contacts = Contacts(in_turn ? SpringOwner::particle : SpringOwner::pair, skin_share * 2 * smallest),
-      .particle_particle = setup.particle_particle,
-      .particle_wall = setup.particle_wall,
-      .gravity = setup.gravity,
-      .dt = setup.time.step,
-      .loads = {},
-      .totals = {},
-      .momentum_ledger = {},
-      .energy_ledger = {},
-      .advance = advance_function(setup.scheme),
-      .readings = setup.scheme.readings,
-  });
-  World& w = *world_;
-  Particles& p = w.particles;
-  if (bar_tip) w.surfaces.bar.emplace(setup.bar, *bar_tip);
-  if (setup.scheme.readings.initial_displacement == InitialDisplacement::velocity) {
-    for (std::size_t i = 0; i < p.count(); ++i) {
-      p.displacement[i] = p.velocity[i] * w.dt;
-      p.rotation[i] = p.spin[i] * w.dt;
-    }
-  }
-  w.kinetic_at_start = kinetic_energy(p);
-  w.kinetic_limit = w.kinetic_at_start;
+  state_ = std::make_unique<State>(State{.world = {.particles = std::move(particles),
+                                                   .surfaces = {.width = setup.container.width, .bar = {}},
+                                                   .particle_particle = setup.particle_particle,
+                                                   .particle_wall = setup.particle_wall,
+                                                   .gravity = setup.gravity,
+                                                   .dt = setup.time.step,
+                                                   .loads = {},
+                                                   .totals = {},
+                                                   .momentum_ledger = {},
+                                                   .energy_ledger = {}},
+                                         .stepper = nullptr});
+  World& w = state_->world;
+  if (bar_tip) w.surfaces.bar.emplace(setup.bar.value(), *bar_tip);
+  w.kinetic_limit = std::numeric_limits<double>::infinity();
   w.check();
-  w.contacts.rebuild(p, w.surfaces);
-  for (PairContact& contact : w.contacts.pairs()) {
-    const double overlap =
-        p.radius[contact.i] + p.radius[contact.j] - (p.position[contact.j] - p.position[contact.i]).norm();
-    if (overlap > 0.0) contact.spring = {w.particle_particle.normal_stiffness * overlap, 0.0, true};
-  }
-  for (SurfaceContact& contact : w.contacts.on_surfaces()) {
-    const double overlap =
-        p.radius[contact.i] - w.surfaces.nearest_point(contact.surface, p.position[contact.i]).distance;
-    if (overlap > 0.0) contact.spring = {w.particle_wall.normal_stiffness * overlap, 0.0, true};
-  }
-  w.momentum_at_start = momentum(p);
-  w.spring_at_start = w.spring_energy();
-  const double bar_speed = bar_tip ? explosion_speed * setup.bar.speed : 0.0;
-  const double weight_energy = total_mass(p) * w.gravity * setup.container.height;
+  state_->stepper = make_stepper(setup, w);
+  w.kinetic_at_start = kinetic_energy(w.particles);
+  w.momentum_at_start = momentum(w.particles);
+  w.spring_at_start = state_->stepper->spring_energy(w);
+  const double bar_speed = bar_tip ? explosion_speed * setup.bar->speed : 0.0;
+  const double weight_energy = total_mass(w.particles) * w.gravity * setup.container.height;
   w.kinetic_limit = explosion_factor * (w.kinetic_at_start + w.spring_at_start + weight_energy) +
-                    0.5 * total_mass(p) * bar_speed * bar_speed;
-  w.moment_of_mass_at_start = moment_of_mass(p);
+                    0.5 * total_mass(w.particles) * bar_speed * bar_speed;
+  w.moment_of_mass_at_start = moment_of_mass(w.particles);
 }
 
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-void Simulation::advance(long steps) { world_->advance(*world_, world_->readings, steps); }
+void Simulation::advance(long steps) { state_->stepper->advance(state_->world, steps); }
 
 void Simulation::start_bar() {
-  if (!world_->surfaces.bar) throw std::logic_error("there is no bar to start");
-  world_->surfaces.bar->start();
+  if (!state_->world.surfaces.bar) throw std::logic_error("there is no bar to start");
+  state_->stepper->start_bar(state_->world);
 }
 
-void Simulation::check() const { world_->check(); }
-const Particles& Simulation::particles() const { return world_->particles; }
-double Simulation::bar_tip() const { return world_->surfaces.bar.value().tip(); }
-BarForce Simulation::bar_force() const { return world_->totals.on_bar; }
-long Simulation::steps() const { return world_->steps; }
+void Simulation::check() const { state_->world.check(); }
+const Particles& Simulation::particles() const { return state_->world.particles; }
+std::optional<double> Simulation::bar_tip() const {
+  const std::optional<Bar>& bar = state_->world.surfaces.bar;
+  return bar ? std::optional(bar->tip()) : std::nullopt;
+}
+BarForce Simulation::bar_force() const { return state_->world.totals.on_bar; }
+Vector2 Simulation::floor_force() const {
+  return -state_->world.totals.force[static_cast<std::size_t>(Surface::floor)];
+}
+long Simulation::steps() const { return state_->world.steps; }
 
 MomentumLedger Simulation::momentum_ledger() const {
-  const World& w = *world_;
+  const World& w = state_->world;
   MomentumLedger ledger = w.momentum_ledger;
   const double time = static_cast<double>(w.steps) * w.dt;
   ledger.weight = Vector2(0.0, -total_mass(w.particles) * w.gravity * time);
@@ -111,27 +97,29 @@ MomentumLedger Simulation::momentum_ledger() const {
 }
 
 EnergyLedger Simulation::energy_ledger() const {
-  const World& w = *world_;
+  const World& w = state_->world;
   EnergyLedger ledger = w.energy_ledger;
   ledger.kinetic = kinetic_energy(w.particles);
-  ledger.spring = w.spring_energy();
+  ledger.spring = state_->stepper->spring_energy(w);
   ledger.kinetic_change = ledger.kinetic - w.kinetic_at_start;
   ledger.spring_change = ledger.spring - w.spring_at_start;
   ledger.potential_change = w.gravity * (moment_of_mass(w.particles) - w.moment_of_mass_at_start);
   return ledger;
 }
 
-std::size_t Simulation::contacts() const { return close_pairs(world_->particles, 0.0).size(); }
+std::size_t Simulation::contacts() const { return close_pairs(state_->world.particles, 0.0).size(); }
 
-double World::spring_energy() const {
-  double energy = 0.0;
-  const auto add = [&](const ContactSpring& spring, const ContactParameters& parameters) {
-    energy += spring.normal * spring.normal / (2 * parameters.normal_stiffness);
-    if (parameters.shear_stiffness > 0.0) energy += spring.shear * spring.shear / (2 * parameters.shear_stiffness);
+void World::enter_impulses(double time, double share) {
+  const auto impulse = [&](Surface surface) -> Vector2 {
+    return totals.force[static_cast<std::size_t>(surface)] * time;
   };
-  for (const PairContact& contact : contacts.pairs()) add(contact.spring, particle_particle);
-  for (const SurfaceContact& contact : contacts.on_surfaces()) add(contact.spring, particle_wall);
-  return energy;
+  momentum_ledger.left_wall += impulse(Surface::left);
+  momentum_ledger.right_wall += impulse(Surface::right);
+  momentum_ledger.floor += impulse(Surface::floor);
+  momentum_ledger.bar += impulse(Surface::bar);
+  if (surfaces.bar)
+    energy_ledger.bar_work +=
+        totals.force[static_cast<std::size_t>(Surface::bar)].dot(surfaces.bar->displacement()) * share;
 }
 
 void World::check() const {

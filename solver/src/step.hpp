@@ -1,6 +1,8 @@
 #pragma once
 // The step, as in the paper's flow chart: contacts, then forces, then moves.
 
+#include "contact_law.hpp"
+#include "contacts.hpp"
 #include "world.hpp"
 
 namespace crossdem {
@@ -14,85 +16,100 @@ struct RelativeMotion {
         shear(relative.y() * normal_direction.x() - relative.x() * normal_direction.y() + turning) {}
 };
 
+using PaperContacts = Contacts<ContactSpring, ContactSpring>;
+
 template <class Scheme>
 class Step {
  public:
-  Step(World& world, const Scheme& scheme) : w_(world), p_(world.particles), scheme_(scheme) {}
+  Step(World& world, PaperContacts& contacts, const Scheme& scheme)
+      : w_(world), p_(world.particles), contacts_(contacts), scheme_(scheme) {}
 
   /// All forces, then all moves.
   void forces_then_moves() {
     begin();
-    for (PairContact& contact : w_.contacts.pairs()) {
-      ContactForce f;
-      Vector2 normal;
-      if (!pair_force(contact, f, normal)) continue;
-      add(contact.i, f, normal);
-      add(contact.j, f, -normal);
+    for (PaperContacts::Pair& contact : contacts_.pairs()) {
+      PairForce f;
+      if (!pair_force(contact, f)) continue;
+      add(contact.i, f.force, f.normal, f.arm_i);
+      add(contact.j, f.force, -f.normal, f.arm_j);
     }
-    for (SurfaceContact& contact : w_.contacts.on_surfaces()) surface_load(contact);
-    for (std::size_t i = 0; i < p_.count(); ++i) move(i);
+    for (PaperContacts::OnSurface& contact : contacts_.on_surfaces()) surface_load(contact);
+    for (std::size_t i = 0; i < p_.count(); ++i) scheme_.integrator.advance(p_, i, w_.loads[i], w_.gravity, w_.dt);
     end();
   }
 
   /// Section 2.6 read literally: each particle in turn takes its forces, with springs of its own, and moves at once.
   void in_turn() {
     begin();
-    auto pair = w_.contacts.pairs().begin();
-    auto on_surface = w_.contacts.on_surfaces().begin();
+    auto pair = contacts_.pairs().begin();
+    auto on_surface = contacts_.on_surfaces().begin();
     for (std::size_t i = 0; i < p_.count(); ++i) {
-      for (; pair != w_.contacts.pairs().end() && pair->i == i; ++pair) {
-        ContactForce f;
-        Vector2 normal;
-        if (pair_force(*pair, f, normal)) add(pair->i, f, normal);
+      for (; pair != contacts_.pairs().end() && pair->i == i; ++pair) {
+        PairForce f;
+        if (pair_force(*pair, f)) add(pair->i, f.force, f.normal, f.arm_i);
       }
-      for (; on_surface != w_.contacts.on_surfaces().end() && on_surface->i == i; ++on_surface)
-        surface_load(*on_surface);
-      move(i);
+      for (; on_surface != contacts_.on_surfaces().end() && on_surface->i == i; ++on_surface) surface_load(*on_surface);
+      scheme_.integrator.advance(p_, i, w_.loads[i], w_.gravity, w_.dt);
     }
     end();
   }
 
  private:
+  struct PairForce {
+    ContactForce force;
+    Vector2 normal;      // from i to j
+    double arm_i = 0.0;  // [m], of the moment
+    double arm_j = 0.0;
+  };
+
   void begin() {
+    if (scheme_.integrator.kicks_twice()) enter_impulses(0.5);
+    scheme_.integrator.begin(p_, w_.loads, w_.gravity, w_.dt);
     if (w_.surfaces.bar) w_.surfaces.bar->advance(w_.dt);
-    if (w_.contacts.outdated(p_, w_.surfaces)) {
+    if (contacts_.outdated(p_, w_.surfaces)) {
       w_.check();
-      w_.contacts.rebuild(p_, w_.surfaces);
+      contacts_.rebuild(p_, w_.surfaces);
     }
-    w_.loads.assign(p_.count(), {});
-    w_.totals.force.fill(Vector2::Zero());
-    w_.totals.on_bar = {};
+    w_.clear_loads();
   }
 
-  /// False where the two do not touch. `normal` points from i to j.
-  bool pair_force(PairContact& contact, ContactForce& force, Vector2& normal) {
+  /// Eqs. (2), (12): the moment's arm of a disc [m]; as printed the whole radius.
+  [[nodiscard]] double arm(std::uint32_t i, double overlap) const {
+    return scheme_.law.readings.torque_arm == TorqueArm::radius ? p_.radius[i] : p_.radius[i] - 0.5 * overlap;
+  }
+
+  /// False where the two do not touch.
+  bool pair_force(PaperContacts::Pair& contact, PairForce& f) {
     const std::uint32_t i = contact.i;
     const std::uint32_t j = contact.j;
     const Vector2 between = p_.position[j] - p_.position[i];
     const double reach = p_.radius[i] + p_.radius[j];
     const double distance_squared = between.squaredNorm();
     if (distance_squared >= reach * reach) {
-      contact.spring = {};
+      contact.memory = {};
       return false;
     }
     const double distance = std::sqrt(distance_squared);
-    normal = between / distance;
+    const double overlap = reach - distance;
+    f.normal = between / distance;
+    f.arm_i = arm(i, overlap);
+    f.arm_j = arm(j, overlap);
     const RelativeMotion moved(p_.displacement[i] - p_.displacement[j],
-                               p_.radius[i] * p_.rotation[i] + p_.radius[j] * p_.rotation[j], normal);
-    RelativeDisplacement u{moved.normal, moved.shear, reach - distance, moved.normal, moved.shear};
+                               f.arm_i * p_.rotation[i] + f.arm_j * p_.rotation[j], f.normal);
+    RelativeDisplacement u{moved.normal, moved.shear, overlap, moved.normal, moved.shear};
     if (scheme_.law.readings.dashpot_velocity == DashpotVelocity::true_velocity) {
-      const RelativeMotion velocity(p_.velocity[i] - p_.velocity[j],
-                                    p_.radius[i] * p_.spin[i] + p_.radius[j] * p_.spin[j], normal);
+      const RelativeMotion velocity(p_.velocity[i] - p_.velocity[j], f.arm_i * p_.spin[i] + f.arm_j * p_.spin[j],
+                                    f.normal);
       u.damped_normal = velocity.normal * w_.dt;
       u.damped_shear = velocity.shear * w_.dt;
     }
-    force = scheme_.law.force(u, w_.particle_particle, w_.dt, contact.spring);
-    w_.energy_ledger.contact_work += force.normal * u.normal + force.shear * u.shear;
+    f.force = scheme_.law.force(u, w_.particle_particle, w_.dt, contact.memory);
+    w_.energy_ledger.contact_work += f.force.normal * u.normal + f.force.shear * u.shear;
     return true;
   }
 
   /// A wall or the bar takes the place of j.
-  void surface_load(SurfaceContact& contact) {
+  void surface_load(PaperContacts::OnSurface& contact) {
     const std::uint32_t i = contact.i;
     const Vector2& centre = p_.position[i];
     const NearestPoint nearest = w_.surfaces.nearest_point(contact.surface, centre);
@@ -101,55 +118,46 @@ class Step {
         nearest.distance < p_.radius[i] &&
         (scheme_.law.readings.bar_corner == BarCorner::nearest_point || !on_bar || w_.surfaces.bar->faces(centre));
     if (!meets) {
-      contact.spring = {};
+      contact.memory = {};
       return;
     }
-    const RelativeMotion moved(p_.displacement[i] - w_.surfaces.displacement(contact.surface),
-                               p_.radius[i] * p_.rotation[i], nearest.normal);
-    RelativeDisplacement u{moved.normal, moved.shear, p_.radius[i] - nearest.distance, moved.normal, moved.shear};
+    const double overlap = p_.radius[i] - nearest.distance;
+    const double arm_i = arm(i, overlap);
+    const RelativeMotion moved(p_.displacement[i] - w_.surfaces.displacement(contact.surface), arm_i * p_.rotation[i],
+                               nearest.normal);
+    RelativeDisplacement u{moved.normal, moved.shear, overlap, moved.normal, moved.shear};
     if (scheme_.law.readings.dashpot_velocity == DashpotVelocity::true_velocity) {
       const RelativeMotion velocity(p_.velocity[i] * w_.dt - w_.surfaces.displacement(contact.surface),
-                                    p_.radius[i] * p_.spin[i] * w_.dt, nearest.normal);
+                                    arm_i * p_.spin[i] * w_.dt, nearest.normal);
       u.damped_normal = velocity.normal;
       u.damped_shear = velocity.shear;
     }
-    const ContactForce force = scheme_.law.force(u, w_.particle_wall, w_.dt, contact.spring);
+    const ContactForce force = scheme_.law.force(u, w_.particle_wall, w_.dt, contact.memory);
     w_.energy_ledger.contact_work += force.normal * u.normal + force.shear * u.shear;
-
-    const Vector2 received = add(i, force, nearest.normal);
-    w_.totals.force[static_cast<std::size_t>(contact.surface)] += received;
-    if (on_bar) (w_.surfaces.bar->touches_tip(centre) ? w_.totals.on_bar.tip : w_.totals.on_bar.shaft) -= received;
+    w_.totals.add(w_.surfaces, contact.surface, centre, add(i, force, nearest.normal, arm_i));
   }
 
   /// Eqs. (10)-(12): the load of one contact on particle i, whose partner lies in direction `normal`. Returns the
   /// force.
-  Vector2 add(std::uint32_t i, const ContactForce& force, const Vector2& normal) {
+  Vector2 add(std::uint32_t i, const ContactForce& force, const Vector2& normal, double arm_i) {
     Vector2 received(-force.normal * normal.x() + force.shear * normal.y(),
                      -force.normal * normal.y() - force.shear * normal.x());
     w_.loads[i].force += received;
-    w_.loads[i].moment -= p_.radius[i] * force.shear;
+    w_.loads[i].moment -= arm_i * force.shear;
     return received;
   }
 
-  void move(std::size_t i) { Scheme::Integrator::advance(p_, i, w_.loads[i], w_.gravity, w_.dt); }
-
   void end() {
-    MomentumLedger& ledger = w_.momentum_ledger;
-    const auto impulse = [&](Surface surface) -> Vector2 {
-      return w_.totals.force[static_cast<std::size_t>(surface)] * w_.dt;
-    };
-    ledger.left_wall += impulse(Surface::left);
-    ledger.right_wall += impulse(Surface::right);
-    ledger.floor += impulse(Surface::floor);
-    ledger.bar += impulse(Surface::bar);
-    if (w_.surfaces.bar)
-      w_.energy_ledger.bar_work +=
-          w_.totals.force[static_cast<std::size_t>(Surface::bar)].dot(w_.surfaces.bar->displacement());
+    enter_impulses(scheme_.integrator.kicks_twice() ? 0.5 : 1.0);
     ++w_.steps;
   }
 
+  /// `share` of the step: how long the latest loads act.
+  void enter_impulses(double share) { w_.enter_impulses(share * w_.dt, share); }
+
   World& w_;
   Particles& p_;
+  PaperContacts& contacts_;
   const Scheme& scheme_;
 };
 

@@ -1,31 +1,38 @@
 #pragma once
-// All that a step reads and writes.
+// All that a step reads and writes, but for the memory of contacts, and what moves it.
 
-#include "contacts.hpp"
 #include "crossdem/simulation.hpp"
 #include "integrators.hpp"
 #include "surfaces.hpp"
 
 namespace crossdem {
 
-/// What the particles received from one surface during the latest step.
+/// What the particles received from the surfaces at the latest evaluation of forces.
 struct SurfaceTotals {
   std::array<Vector2, all_surfaces.size()> force;  // [N]
   BarForce on_bar;
+
+  void add(const Surfaces& surfaces, Surface surface, const Vector2& centre, const Vector2& received) {
+    force[static_cast<std::size_t>(surface)] += received;
+    if (surface == Surface::bar) (surfaces.bar->touches_tip(centre) ? on_bar.tip : on_bar.shaft) -= received;
+  }
+  void clear() {
+    force.fill(Vector2::Zero());
+    on_bar = {};
+  }
 };
 
 struct World {
   Particles particles;
   Surfaces surfaces;
-  Contacts contacts;
   ContactParameters particle_particle;
   ContactParameters particle_wall;
   double gravity = 0.0;  // [m/s^2]
   double dt = 0.0;       // [s]
   long steps = 0;
 
-  std::vector<Load> loads;  // of the current step
-  SurfaceTotals totals;     // of the current step
+  std::vector<Load> loads;  // by contacts, at the latest evaluation
+  SurfaceTotals totals;     // at the latest evaluation
   MomentumLedger momentum_ledger;
   EnergyLedger energy_ledger;
 
@@ -35,11 +42,36 @@ struct World {
   double moment_of_mass_at_start = 0.0;         // sum m y [kg m]
   double kinetic_limit = 0.0;                   // [J], beyond it the run has exploded
 
-  void (*advance)(World&, const Readings&, long steps) = nullptr;
-  Readings readings;
+  /// Forgets the loads and totals of the last evaluation.
+  void clear_loads() {
+    loads.assign(particles.count(), {});
+    totals.clear();
+  }
 
+  /// Enters into the ledgers that the latest totals act for `time` [s], over `share` of the bar's last displacement.
+  void enter_impulses(double time, double share);
+
+  /// Throws SimulationError, see Simulation::check.
   void check() const;
-  [[nodiscard]] double spring_energy() const;
 };
+
+/// Moves a world by its scheme, with the scheme's memory of contacts.
+class Stepper {
+ public:
+  Stepper() = default;
+  virtual ~Stepper() = default;
+  Stepper(const Stepper&) = delete;
+  Stepper& operator=(const Stepper&) = delete;
+
+  virtual void advance(World& world, long steps) = 0;
+  /// From the next step on the bar moves.
+  virtual void start_bar(World& world) { world.surfaces.bar->start(); }
+  /// [J] in the springs of all contacts.
+  [[nodiscard]] virtual double spring_energy(const World& world) const = 0;
+};
+
+/// [m] Neighbours within a fifth of the smallest diameter are listed: wide enough that lists last hundreds of steps in
+/// a bed that creeps, narrow enough that few pairs are looked at in vain.
+double list_skin(const Particles& particles);
 
 }  // namespace crossdem

@@ -3,6 +3,7 @@
 // src/case_schema.hpp, by which files are read and resolved cases are written.
 
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -33,18 +34,29 @@ struct ParticleMix {
   double density = 0.0;               // [kg/m^3]
 };
 
+/// A particle placed by hand, instead of a bed that settles.
+struct PlacedParticle {
+  double x = 0.0;                 // [m], of the centre
+  double y = 0.0;                 // [m]
+  double radius = 0.0;            // [m]
+  double velocity_x = 0.0;        // [m/s]
+  double velocity_y = 0.0;        // [m/s]
+  double angular_velocity = 0.0;  // [rad/s], counter-clockwise
+};
+
 struct BarGeometry {
   double width = 0.0;     // [m]
   double length = 0.0;    // [m]
   double centre_x = 0.0;  // [m]
   double speed = 0.0;     // [m/s], downwards
+  double tip = 0.0;       // [m], y of the bottom face at the start; 0: it touches the topmost particle under it
 };
 
-/// t = 0 is when the bar starts.
+/// t = 0 is when the bar starts or, without a bar, when the rest is over.
 struct TimeControl {
   double step = 0.0;             // [s]
-  double rest = 0.0;             // [s] before the bar starts
-  double penetration = 0.0;      // [s]
+  double rest = 0.0;             // [s] before t = 0
+  double penetration = 0.0;      // [s] from t = 0 on
   double sample_interval = 0.0;  // [s] between rows of resistance
   double frame_interval = 0.0;   // [s] between frames of motion
   bool allow_above_eq32 = false;
@@ -68,15 +80,20 @@ struct PackingRecipe {
 
 enum class UpdateOrder { forces_then_moves, in_turn };
 enum class FirstContactNormal { spring_and_dashpot, spring_only };
-enum class FirstContactShear { clamped_share, raw_share };
+enum class FirstContactShear { clamped_share, raw_share, whole_step };
 enum class LostContact { forget, keep_zero, keep_negative };
 enum class Attraction { allowed, clipped };
 enum class NormalSpring { incremental, overlap };
 enum class DashpotVelocity { averaged_displacement, true_velocity };
 enum class InitialDisplacement { velocity, zero };
 enum class BarCorner { nearest_point, faces_only };
+enum class SlipCap { spring, total };
+enum class TorqueArm { radius, contact_point };
+enum class Integration { averaged_displacement, leap_frog, velocity_verlet };
+enum class Inertia { disc, sphere };
 
-/// Where the paper's text leaves a choice: the reading taken. The initial values are the default readings.
+/// Where the paper's text leaves a choice, and where established codes do otherwise: the reading taken. The initial
+/// values are the default readings.
 struct Readings {
   UpdateOrder update_order = UpdateOrder::forces_then_moves;
   FirstContactNormal first_contact_normal = FirstContactNormal::spring_and_dashpot;
@@ -87,13 +104,17 @@ struct Readings {
   DashpotVelocity dashpot_velocity = DashpotVelocity::averaged_displacement;
   InitialDisplacement initial_displacement = InitialDisplacement::velocity;
   BarCorner bar_corner = BarCorner::nearest_point;
+  SlipCap slip_cap = SlipCap::spring;
+  TorqueArm torque_arm = TorqueArm::radius;
+  Integration integrator = Integration::averaged_displacement;
+  Inertia inertia = Inertia::disc;
 
   bool operator==(const Readings&) const = default;
 };
 
 struct SchemeChoice {
-  std::string name;
-  Readings readings;
+  std::string name;   // paper; or liggghts, yade, yade_averaged: what these codes do, step by step
+  Readings readings;  // of the scheme "paper"; the others have their own
 };
 
 /// What a run must pass before it is compared.
@@ -120,13 +141,39 @@ struct Check {
   std::string reason;
 };
 
+/// What a case with a known answer says: a closed form or an invariant. Which there are is known to the comparison.
+struct Answer {
+  std::string quantity;
+  MarginKind kind = MarginKind::relative;
+  double tolerance = 0.0;  // of the limit of vanishing time steps, in the sense of `kind`
+  std::string reason;
+};
+
+/// An engine that is known to miss an answer, by how much, and why.
+struct ExpectedDifference {
+  std::string engine;
+  std::string quantity;
+  double value = 0.0;      // limit less answer, in the quantity's unit
+  double tolerance = 0.0;  // in the quantity's unit
+  std::string reason;
+};
+
+/// How far an engine may be from the native scheme that does what it does, where that is not to the last bit.
+struct TwinLimit {
+  std::string engine;
+  double limit = 0.0;  // [m], largest difference of a position
+  double until = 0.0;  // [s], from t = 0
+  std::string reason;
+};
+
 struct Case {
   std::string name;
   std::string title;
   double gravity = 0.0;  // [m/s^2], acts in -y
   Container container;
-  ParticleMix particles;
-  BarGeometry bar;
+  std::vector<PlacedParticle> placed;  // none: a bed of `particles` is settled
+  ParticleMix particles;               // that of `placed`, where there are any
+  std::optional<BarGeometry> bar;
   ContactParameters particle_particle;
   ContactParameters particle_wall;
   TimeControl time;
@@ -136,6 +183,9 @@ struct Case {
   Gates gates;
   Marks marks;
   std::vector<Check> checks;
+  std::vector<Answer> answers;
+  std::vector<ExpectedDifference> differences;
+  std::vector<TwinLimit> twins;
 
   /// [kg] of a disc of this radius [m]: rho pi r^2 h.
   [[nodiscard]] double disc_mass(double radius) const;

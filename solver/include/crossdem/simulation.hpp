@@ -52,12 +52,11 @@ struct EnergyLedger {
   [[nodiscard]] double integration() const { return kinetic_change + potential_change + contact_work - bar_work; }
 };
 
-struct World;  // all that a step reads and writes
-
 class Simulation {
  public:
   /// `particles` with their positions and velocities; `bar_tip`: y of the bar's bottom face [m], none without a bar.
-  /// Particles that overlap at the start are old contacts: normal spring k_n x overlap, shear spring zero.
+  /// Particles that overlap at the start are old contacts: normal spring k_n x overlap, shear spring zero. The scheme
+  /// "liggghts" sets the masses anew, by that code's own formula (the last bit may differ).
   Simulation(const Case& setup, Particles particles, std::optional<double> bar_tip);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
@@ -74,8 +73,10 @@ class Simulation {
   void check() const;
 
   [[nodiscard]] const Particles& particles() const;
-  [[nodiscard]] double bar_tip() const;  // [m]
+  [[nodiscard]] std::optional<double> bar_tip() const;  // [m], none without a bar
   [[nodiscard]] BarForce bar_force() const;
+  [[nodiscard]] Vector2 floor_force()
+      const;  // [N] of the particles on the floor, +y up, as evaluated in the latest step
   [[nodiscard]] MomentumLedger momentum_ledger() const;
   [[nodiscard]] EnergyLedger energy_ledger() const;
   [[nodiscard]] long steps() const;
@@ -84,7 +85,8 @@ class Simulation {
   [[nodiscard]] std::size_t contacts() const;
 
  private:
-  std::unique_ptr<World> world_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace crossdem

@@ -18,6 +18,9 @@ struct DefaultReadings {
   static constexpr auto normal_spring = of_default.normal_spring;
   static constexpr auto dashpot_velocity = of_default.dashpot_velocity;
   static constexpr auto bar_corner = of_default.bar_corner;
+  static constexpr auto slip_cap = of_default.slip_cap;
+  static constexpr auto torque_arm = of_default.torque_arm;
+  static constexpr auto integrator = of_default.integrator;
 };
 
 /// `Choice` is DefaultReadings, or Readings for any others.
@@ -43,7 +46,7 @@ struct TanakaLaw {
     if (readings.attraction == Attraction::clipped) f.normal = std::max(f.normal, 0.0);
 
     spring.shear += p.shear_stiffness * u.shear;
-    const double slip_force = p.friction * spring.normal;
+    const double slip_force = p.friction * (readings.slip_cap == SlipCap::spring ? spring.normal : std::abs(f.normal));
     if (std::abs(spring.shear) > slip_force) {
       f.shear = spring.shear = std::copysign(slip_force, spring.shear);  // Eq. (9)
     } else {
@@ -55,11 +58,11 @@ struct TanakaLaw {
  private:
   /// Eqs. (3), (4): at first contact only the share of the step spent in contact counts.
   [[nodiscard]] RelativeDisplacement share_in_contact(RelativeDisplacement u) const {
-    double share = 0.0;
+    double share = 1.0;
     if (readings.first_contact_shear == FirstContactShear::clamped_share) {
       share = u.normal > 0.0 ? std::min(u.overlap / u.normal, 1.0) : 0.0;
-    } else if (u.normal != 0.0) {
-      share = u.overlap / u.normal;
+    } else if (readings.first_contact_shear == FirstContactShear::raw_share) {
+      share = u.normal != 0.0 ? u.overlap / u.normal : 0.0;
     }
     u.shear *= share;
     u.normal = u.overlap;

@@ -1,0 +1,35 @@
+#include "scheme.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "schemes/liggghts.hpp"
+#include "schemes/paper.hpp"
+#include "schemes/yade.hpp"
+
+namespace crossdem {
+
+double list_skin(const Particles& particles) {
+  constexpr double share_of_diameter = 0.2;
+  return share_of_diameter * 2 * *std::min_element(particles.radius.begin(), particles.radius.end());
+}
+
+std::unique_ptr<Stepper> make_stepper(const Case& setup, World& world) {
+  const SchemeChoice& choice = setup.scheme;
+  if (choice.name == "paper") {
+    Readings only_start_differs = choice.readings;  // these two concern the start, not the step
+    only_start_differs.initial_displacement = {};
+    only_start_differs.inertia = {};
+    if (only_start_differs == Readings{})
+      return std::make_unique<PaperStepper<PaperScheme>>(PaperScheme{}, choice.readings, world);
+    return std::make_unique<PaperStepper<MixedScheme>>(MixedScheme{{choice.readings}, {choice.readings.integrator}},
+                                                       choice.readings, world);
+  }
+  if (choice.name == "liggghts") return std::make_unique<ConventionalStepper<LiggghtsScheme>>(setup, world);
+  if (choice.name == "yade") return std::make_unique<ConventionalStepper<YadeScheme<YadeLeapFrog>>>(setup, world);
+  if (choice.name == "yade_averaged")
+    return std::make_unique<ConventionalStepper<YadeScheme<YadeMemoryForce>>>(setup, world);
+  throw std::invalid_argument("no scheme \"" + choice.name + "\"");
+}
+
+}  // namespace crossdem

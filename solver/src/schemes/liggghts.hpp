@@ -1,0 +1,215 @@
+#pragma once
+// What LIGGGHTS-PUBLIC 3.8 does with discs, step by step and to the last bit: velocity Verlet (src/fix_nve_sphere.cpp)
+// and the law "hooke/stiffness tangential history absolute_damping on tangential_damping on"
+// (src/surface_model_default.h, normal_model_hooke_stiffness.h, tangential_model_history.h). In the plane, so that its
+// products with zero are left out.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "conventional.hpp"
+#include "liggghts_mesh.hpp"
+
+namespace crossdem {
+
+class LiggghtsScheme {
+ public:
+  struct PairMemory {
+    Vector2 shear = Vector2::Zero();  // [m], displacement of the shear spring
+  };
+  struct SurfaceMemory {
+    std::array<Vector2, MeshBar::faces> shear{Vector2::Zero(), Vector2::Zero(),
+                                              Vector2::Zero()};  // [m], by the bar's face
+  };
+  static constexpr bool first_evaluation_advances = false;
+  /// The bar starts with a new "run", whose setup evaluates the forces once more, with the velocities of the full step.
+  static constexpr bool evaluates_again_when_the_bar_starts = true;
+
+  LiggghtsScheme(const Case& setup, World& world)
+      : limit_force_(setup.scheme.readings.attraction == Attraction::clipped) {
+    Particles& p = world.particles;
+    const double density = setup.particles.density * setup.container.thickness;  // [kg/m^2], src/atom_vec_sphere.cpp
+    for (std::size_t i = 0; i < p.count(); ++i) {
+      p.mass[i] = std::numbers::pi * p.radius[i] * p.radius[i] * density;
+      p.inertia[i] = 0.5 * p.mass[i] * p.radius[i] * p.radius[i];
+    }
+    if (world.surfaces.bar)
+      bar_.emplace(*setup.bar, world.surfaces.bar->tip(), *std::max_element(p.radius.begin(), p.radius.end()));
+  }
+
+  /// Half a kick, the drift, the bar.
+  void move(World& w) {
+    w.enter_impulses(0.5 * w.dt, 0.5);
+    half_kick(w);
+    Particles& p = w.particles;
+    for (std::size_t i = 0; i < p.count(); ++i) {
+      p.displacement[i] = w.dt * p.velocity[i];
+      p.position[i] += p.displacement[i];
+      p.angle[i] += w.dt * p.spin[i];
+    }
+    if (!bar_) return;
+    Bar& bar = *w.surfaces.bar;
+    bar.advance(w.dt);
+    if (bar.moving()) bar_->translate(-bar.speed() * w.dt);
+    bar_velocity_ = bar.moving() ? -bar.speed() : 0.0;
+  }
+
+  void finish(World& w) {
+    half_kick(w);
+    w.enter_impulses(0.5 * w.dt, 0.5);
+  }
+
+  void begin_evaluation() { spring_energy_ = 0.0; }
+
+  void pair(World& w, PairContact<PairMemory>& contact, bool advance) {
+    Particles& p = w.particles;
+    const std::uint32_t i = contact.i;
+    const std::uint32_t j = contact.j;
+    const Vector2 delta = p.position[i] - p.position[j];
+    const double distance_squared = delta.x() * delta.x() + delta.y() * delta.y();
+    const double reach = p.radius[i] + p.radius[j];
+    if (!(distance_squared < reach * reach)) {
+      contact.memory = {};
+      return;
+    }
+    const double distance = std::sqrt(distance_squared);
+    const double inverse = 1.0 / distance;
+    const double overlap = reach - distance;
+    const double arm_i = p.radius[i] - 0.5 * overlap;
+    const double arm_j = p.radius[j] - 0.5 * overlap;
+    const double turning = (arm_i * p.spin[i] + arm_j * p.spin[j]) * inverse;
+    const Reaction f = react({.delta = delta,
+                              .inverse = inverse,
+                              .overlap = overlap,
+                              .velocity = p.velocity[i] - p.velocity[j],
+                              .turning = turning},
+                             w.particle_particle, w.dt, contact.memory.shear, advance);
+    w.loads[i].force += f.force;
+    w.loads[i].moment += -arm_i * f.couple;
+    w.loads[j].force += -f.force;
+    w.loads[j].moment += -arm_j * f.couple;
+    w.energy_ledger.contact_work -=
+        w.dt * (f.force.dot(p.velocity[i] - p.velocity[j]) - f.couple * (arm_i * p.spin[i] + arm_j * p.spin[j]));
+  }
+
+  /// Gravity is the first of the fixes.
+  static void after_pairs(World& w) {
+    for (std::size_t i = 0; i < w.particles.count(); ++i)
+      w.loads[i].force.y() += w.particles.mass[i] * (w.gravity * -1.0);
+  }
+
+  void surface(World& w, SurfaceContact<SurfaceMemory>& contact, bool advance) {
+    const Vector2& centre = w.particles.position[contact.i];
+    const double radius = w.particles.radius[contact.i];
+    if (contact.surface == Surface::bar) {
+      std::array<bool, MeshBar::faces> touching{};
+      bar_->for_each_contact(centre, [&](std::size_t face, const MeshContact& at) {
+        const double gap = at.distance - radius;
+        if (gap > 0.0) return;
+        touching[face] = true;
+        double velocity = 0.0;  // of the wall, weighed as LIGGGHTS does: the weights need not sum to one
+        if (bar_velocity_ != 0.0)
+          velocity =
+              at.barycentric[0] * bar_velocity_ + at.barycentric[1] * bar_velocity_ + at.barycentric[2] * bar_velocity_;
+        touch(w, contact, -at.delta, -gap, {0.0, velocity}, contact.memory.shear[face], advance);
+      });
+      for (std::size_t face = 0; face < MeshBar::faces; ++face)
+        if (!touching[face]) contact.memory.shear[face].setZero();
+      return;
+    }
+    const bool side = contact.surface != Surface::floor;
+    const double at = side ? centre.x() : centre.y();
+    const double wall = contact.surface == Surface::right ? w.surfaces.width : 0.0;
+    const double gap = at > wall ? at - wall - radius : wall - at - radius;
+    if (gap > 0.0) {
+      contact.memory = {};
+      return;
+    }
+    const double towards = wall - at;
+    const Vector2 delta = side ? Vector2(-towards, 0.0) : Vector2(0.0, -towards);
+    touch(w, contact, delta, -gap, Vector2::Zero(), contact.memory.shear[0], advance);
+  }
+
+  [[nodiscard]] double spring_energy() const { return spring_energy_; }
+
+ private:
+  struct Approach {
+    Vector2 delta;         // [m], from the partner's centre or the wall's closest point to the centre of i
+    double inverse = 0.0;  // 1 / distance [1/m]
+    double overlap = 0.0;  // [m]
+    Vector2 velocity;      // [m/s], of i relative to its partner
+    double turning = 0.0;  // [rad/s], of the surfaces, over the distance
+  };
+  struct Reaction {
+    Vector2 force;        // [N], on i
+    double couple = 0.0;  // [N]: the moment is -arm x couple
+  };
+
+  /// The law. `shear` is the contact's memory.
+  Reaction react(const Approach& a, const ContactParameters& k, double dt, Vector2& shear, bool advance) {
+    const Vector2 normal = a.delta * a.inverse;
+    const double approach = a.velocity.x() * normal.x() + a.velocity.y() * normal.y();  // < 0: approaching
+    const Vector2 sliding =
+        a.velocity - approach * normal - Vector2(0.0 - a.delta.y() * a.turning, a.delta.x() * a.turning - 0.0);
+    double push = -k.normal_damping * approach + k.normal_stiffness * a.overlap;
+    if (limit_force_ && push < 0.0) push = 0.0;
+
+    if (advance) {
+      shear += sliding * dt;
+      const double off_plane = shear.x() * normal.x() + shear.y() * normal.y();
+      shear -= off_plane * normal;
+    }
+    const double stretch = std::sqrt(shear.x() * shear.x() + shear.y() * shear.y());
+    Vector2 drag = -(k.shear_stiffness * shear);
+    const double spring = k.shear_stiffness * stretch;
+    const double cap = k.friction * std::abs(push);
+    if (spring > cap) {
+      drag *= cap / spring;
+      if (advance) shear = -drag / k.shear_stiffness;
+    } else {
+      drag -= k.shear_damping * sliding;
+    }
+    spring_energy_ += 0.5 * k.normal_stiffness * a.overlap * a.overlap + 0.5 * k.shear_stiffness * shear.squaredNorm();
+    return {push * normal + drag, normal.x() * drag.y() - normal.y() * drag.x()};
+  }
+
+  void touch(World& w, const SurfaceContact<SurfaceMemory>& contact, const Vector2& delta, double overlap,
+             const Vector2& wall_velocity, Vector2& shear, bool advance) {
+    Particles& p = w.particles;
+    const std::uint32_t i = contact.i;
+    const double distance = p.radius[i] - overlap;
+    const double inverse = 1.0 / distance;
+    const double arm = p.radius[i] - 0.5 * overlap;
+    const Reaction f = react({.delta = delta,
+                              .inverse = inverse,
+                              .overlap = p.radius[i] - distance,
+                              .velocity = p.velocity[i] - wall_velocity,
+                              .turning = arm * p.spin[i] * inverse},
+                             w.particle_wall, w.dt, shear, advance);
+    w.loads[i].force += f.force;
+    w.loads[i].moment += -arm * f.couple;
+    w.totals.add(w.surfaces, contact.surface, p.position[i], f.force);
+    w.energy_ledger.contact_work -= w.dt * (f.force.dot(p.velocity[i] - wall_velocity) - f.couple * arm * p.spin[i]);
+  }
+
+  static void half_kick(World& w) {
+    Particles& p = w.particles;
+    const double half = 0.5 * w.dt;
+    const double half_for_discs = half / 0.5;
+    for (std::size_t i = 0; i < p.count(); ++i) {
+      p.velocity[i] += half / p.mass[i] * w.loads[i].force;
+      p.spin[i] += half_for_discs / (p.radius[i] * p.radius[i] * p.mass[i]) * w.loads[i].moment;
+    }
+  }
+
+  bool limit_force_;
+  std::optional<MeshBar> bar_;
+  double bar_velocity_ = 0.0;  // [m/s], as the wall's contacts see it
+  double spring_energy_ = 0.0;
+};
+
+static_assert(ConventionalScheme<LiggghtsScheme>);
+
+}  // namespace crossdem

@@ -1,0 +1,156 @@
+#pragma once
+// The bar as LIGGGHTS has it: a surface mesh of six triangles that stand upright on the plane of the discs, operation
+// by operation as src/tri_mesh_I.h, src/surface_mesh_I.h and src/math_extra_liggghts.h of LIGGGHTS-PUBLIC 3.8.
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "crossdem/case.hpp"
+#include "crossdem/state.hpp"
+
+namespace crossdem {
+
+using Vector3 = Eigen::Vector3d;
+
+/// Summed from the left, as LIGGGHTS does.
+inline double dot_in_order(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// What a triangle says of a disc in reach.
+struct MeshContact {
+  Vector2 delta;                        // [m], from the disc's centre to the closest point
+  double distance = 0.0;                // [m]
+  std::array<double, 3> barycentric{};  // of the closest point
+  bool on_face = false;                 // else on an edge
+};
+
+class MeshTriangle {
+ public:
+  /// `owned`: the one edge that acts, of those that discs can reach; -1 for none. An edge acts in one of the two
+  /// triangles that share it, that which comes later in the file; between triangles of one plane it acts in neither.
+  MeshTriangle(const std::array<Vector3, 3>& nodes, int owned) : node_(nodes), owned_(owned) {
+    for (int k = 0; k < 3; ++k) {
+      edge_[k] = node_[(k + 1) % 3] - node_[k];
+      length_[k] = scale_to_one(edge_[k]);
+    }
+    normal_ = edge_[0].cross(edge_[1]);
+    scale_to_one(normal_);
+    const Vector3 centre = (node_[0] + node_[1] + node_[2]) / 3.0;
+    double reach = 0.0;
+    for (const Vector3& corner : node_) reach = std::max(reach, (corner - centre).norm());
+    slack_ = -1e-8 / (2.0 * reach);
+  }
+
+  void translate(double dy) {
+    for (Vector3& corner : node_) corner.y() += dy;
+  }
+
+  /// None where the closest point is on an edge that does not act, or at a node: these are out of the discs' reach.
+  [[nodiscard]] std::optional<MeshContact> contact(const Vector2& disc_centre) const {
+    const Vector3 centre(disc_centre.x(), disc_centre.y(), 0.0);
+    const Vector3 from_node = centre - node_[0];
+    const double a = dot_in_order(from_node, edge_[0]);
+    const double b = dot_in_order(from_node, edge_[2]);
+    const double c = dot_in_order(edge_[0], edge_[2]);
+    const double one_less_square = 1 - c * c;
+    MeshContact found;
+    auto& bary = found.barycentric;
+    bary[1] = (a - b * c) / (length_[0] * one_less_square);
+    bary[2] = (a * c - b) / (length_[2] * one_less_square);
+    bary[0] = 1. - bary[1] - bary[2];
+    const std::array<bool, 3> inside{bary[0] > slack_, bary[1] > slack_, bary[2] > slack_};
+    if (inside[0] && inside[1] && inside[2]) {
+      const double height = dot_in_order(normal_, from_node);
+      found.on_face = true;
+      return to_point(found, centre, centre - normal_ * height);
+    }
+    // Outside of edge k, opposite to node k + 2, are the points that only that node's coordinate excludes.
+    for (int k = 0; k < 3; ++k)
+      if (inside[k] && inside[(k + 1) % 3]) return edge_contact(found, centre, k);
+    return std::nullopt;
+  }
+
+ private:
+  [[nodiscard]] std::optional<MeshContact> edge_contact(MeshContact found, const Vector3& centre, int k) const {
+    const double along = dot_in_order(centre - node_[k], edge_[k]);
+    if (k != owned_ || along < -1e-10 || along > length_[k] + 1e-10) return std::nullopt;
+    found.barycentric[(k + 2) % 3] = 0.;
+    found.barycentric[k] = 1. - along / length_[k];
+    found.barycentric[(k + 1) % 3] = 1. - found.barycentric[k];
+    return to_point(found, centre, node_[k] + edge_[k] * along);
+  }
+
+  /// Returns the length it had. By its reciprocal, so that what should be 1 may miss it by the last bit.
+  static double scale_to_one(Vector3& vector) {
+    const double length = std::sqrt(dot_in_order(vector, vector));
+    vector = (1.0 / length) * vector;
+    return length;
+  }
+
+  static MeshContact to_point(MeshContact found, const Vector3& centre, const Vector3& closest) {
+    const Vector3 delta = closest - centre;
+    const Vector3 back = centre - closest;
+    found.delta = delta.head<2>();
+    found.distance = std::sqrt(dot_in_order(back, back));
+    return found;
+  }
+
+  std::array<Vector3, 3> node_;
+  std::array<Vector3, 3> edge_;  // unit vectors, from node k to node k + 1
+  std::array<double, 3> length_{};
+  Vector3 normal_;
+  double slack_ = 0.0;  // how far outside counts as on the face, in barycentric coordinates
+  int owned_;
+};
+
+/// Left, right and bottom face in this order, two triangles each.
+class MeshBar {
+ public:
+  static constexpr std::size_t faces = 3;
+
+  /// `largest_radius` [m]: the triangles reach 1.6 of it to either side of the plane, as in the STL file of the
+  /// adapter.
+  MeshBar(const BarGeometry& bar, double tip, double largest_radius) {
+    const double left = bar.centre_x - bar.width / 2;
+    const double right = bar.centre_x + bar.width / 2;
+    const double top = tip + bar.length;
+    const double half = 1.6 * largest_radius;
+    add_face({left, tip}, {left, top}, half, false, true);
+    add_face({right, top}, {right, tip}, half, true, false);
+    add_face({right, tip}, {left, tip}, half, true, true);
+  }
+
+  void translate(double dy) {
+    for (MeshTriangle& triangle : triangles_) triangle.translate(dy);
+  }
+
+  /// Calls `act(face, contact)` for each face that the disc at `centre` is opposite of, or whose own edge it is.
+  template <class Act>
+  void for_each_contact(const Vector2& centre, Act act) const {
+    for (std::size_t face = 0; face < faces; ++face) {
+      bool on_face = false;
+      for (std::size_t k = 2 * face; k < 2 * face + 2; ++k) {
+        const std::optional<MeshContact> contact = triangles_[k].contact(centre);
+        if (!contact || (contact->on_face && on_face)) continue;  // a plane counts once
+        on_face = on_face || contact->on_face;
+        act(face, *contact);
+      }
+    }
+  }
+
+ private:
+  void add_face(const Vector2& start, const Vector2& end, double half, bool owns_start, bool owns_end) {
+    const Vector3 start_back(start.x(), start.y(), -half);
+    const Vector3 end_back(end.x(), end.y(), -half);
+    const Vector3 end_front(end.x(), end.y(), half);
+    const Vector3 start_front(start.x(), start.y(), half);
+    triangles_.emplace_back(std::array{start_back, end_back, end_front}, owns_end ? 1 : -1);
+    triangles_.emplace_back(std::array{start_back, end_front, start_front}, owns_start ? 2 : -1);
+  }
+
+  std::vector<MeshTriangle> triangles_;
+};
+
+}  // namespace crossdem

@@ -1,0 +1,99 @@
+#pragma once
+// The paper's scheme, and its mixtures with what established codes do: one step, its ingredients chosen by readings.
+
+#include "../laws/tanaka.hpp"
+#include "../step.hpp"
+
+namespace crossdem {
+
+/// The default readings: known to the compiler, so that the step holds no branch for the others.
+struct PaperScheme {
+  TanakaLaw<DefaultReadings> law;
+  AveragedDisplacement integrator;
+};
+
+/// Any readings.
+struct MixedScheme {
+  TanakaLaw<Readings> law;
+  ChosenIntegrator integrator;
+};
+
+template <class Scheme>
+class PaperStepper final : public Stepper {
+ public:
+  PaperStepper(const Scheme& scheme, const Readings& readings, World& world)
+      : scheme_(scheme),
+        in_turn_(readings.update_order == UpdateOrder::in_turn),
+        contacts_(in_turn_ ? MemoryOwner::particle : MemoryOwner::pair, list_skin(world.particles)) {
+    Particles& p = world.particles;
+    if (readings.inertia == Inertia::sphere)
+      for (std::size_t i = 0; i < p.count(); ++i) p.inertia[i] = 0.4 * p.mass[i] * p.radius[i] * p.radius[i];
+    if (readings.initial_displacement == InitialDisplacement::velocity) {
+      for (std::size_t i = 0; i < p.count(); ++i) {
+        p.displacement[i] = p.velocity[i] * world.dt;
+        p.rotation[i] = p.spin[i] * world.dt;
+      }
+    }
+    contacts_.rebuild(p, world.surfaces);
+    take_overlaps_as_old_contacts(world);
+    world.clear_loads();
+    if (scheme_.integrator.kicks_twice()) first_loads(world);
+  }
+
+  void advance(World& world, long steps) override {
+    Step<Scheme> step(world, contacts_, scheme_);
+    if (in_turn_)
+      for (long n = 0; n < steps; ++n) step.in_turn();
+    else
+      for (long n = 0; n < steps; ++n) step.forces_then_moves();
+  }
+
+  /// e_n^2 / 2 k_n + e_s^2 / 2 k_s.
+  [[nodiscard]] double spring_energy(const World& world) const override {
+    double energy = 0.0;
+    const auto add = [&](const ContactSpring& spring, const ContactParameters& parameters) {
+      energy += spring.normal * spring.normal / (2 * parameters.normal_stiffness);
+      if (parameters.shear_stiffness > 0.0) energy += spring.shear * spring.shear / (2 * parameters.shear_stiffness);
+    };
+    for (const auto& contact : contacts_.pairs()) add(contact.memory, world.particle_particle);
+    for (const auto& contact : contacts_.on_surfaces()) add(contact.memory, world.particle_wall);
+    return energy;
+  }
+
+ private:
+  void take_overlaps_as_old_contacts(const World& world) {
+    const Particles& p = world.particles;
+    for (auto& contact : contacts_.pairs()) {
+      const double overlap =
+          p.radius[contact.i] + p.radius[contact.j] - (p.position[contact.j] - p.position[contact.i]).norm();
+      if (overlap > 0.0) contact.memory = {world.particle_particle.normal_stiffness * overlap, 0.0, true};
+    }
+    for (auto& contact : contacts_.on_surfaces()) {
+      const double overlap =
+          p.radius[contact.i] - world.surfaces.nearest_point(contact.surface, p.position[contact.i]).distance;
+      if (overlap > 0.0) contact.memory = {world.particle_wall.normal_stiffness * overlap, 0.0, true};
+    }
+  }
+
+  /// The loads before the first step, for an integrator that starts with half a kick: those of the springs at rest.
+  void first_loads(World& world) const {
+    const Particles& p = world.particles;
+    for (const auto& contact : contacts_.pairs()) {
+      const Vector2 push = contact.memory.normal * (p.position[contact.j] - p.position[contact.i]).normalized();
+      world.loads[contact.i].force -= push;
+      world.loads[contact.j].force += push;
+    }
+    for (const auto& contact : contacts_.on_surfaces()) {
+      const Vector2& centre = p.position[contact.i];
+      const Vector2 received = -contact.memory.normal * world.surfaces.nearest_point(contact.surface, centre).normal;
+      world.loads[contact.i].force += received;
+      world.totals.add(world.surfaces, contact.surface, centre, received);
+    }
+  }
+
+  Scheme scheme_;
+  bool in_turn_;
+  PaperContacts contacts_;
+};
+
+}  // namespace crossdem

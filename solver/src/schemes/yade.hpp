@@ -1,0 +1,234 @@
+#pragma once
+// What YADE 2023.02 does with discs, step by step and to the last bit: Law2_ScGeom_ViscElPhys_Basic between spheres
+// bound to a plane, walls and a box, and NewtonIntegrator without damping. In the plane, so that its products with zero
+// are left out.
+
+#include <cmath>
+#include <vector>
+
+#include "conventional.hpp"
+
+namespace crossdem {
+
+/// NewtonIntegrator: v += (F/m + g) dt, x += v dt. The law sees the velocities of half a step before its positions.
+class YadeLeapFrog {
+ public:
+  explicit YadeLeapFrog(const Particles&) {}
+  [[nodiscard]] static const Vector2& velocity(const Particles& p, std::size_t i) { return p.velocity[i]; }
+  [[nodiscard]] static double spin(const Particles& p, std::size_t i) { return p.spin[i]; }
+
+  static void move(Particles& p, std::size_t i, const Load& load, double gravity, double dt) {
+    p.velocity[i] += dt * (load.force / p.mass[i] + Vector2(0.0, -gravity));
+    p.spin[i] += dt * (load.moment / p.inertia[i]);
+    p.position[i] += p.velocity[i] * dt;
+    p.angle[i] += p.spin[i] * dt;
+  }
+};
+
+/// The paper's averaged displacement inside YADE: with w = displacement / dt, Eqs. (16)-(21) read
+/// w_t = w_(t-1) + (w_(t-1) - w_(t-2)) / 2 + a dt / 2, a leap-frog step of twice the mass and inertia under half of
+/// gravity and a further load m (w_(t-1) - w_(t-2)) / dt. YADE moves by w; the paper's velocity is 2 w_t - w_(t-1).
+class YadeMemoryForce {
+ public:
+  explicit YadeMemoryForce(const Particles& p)
+      : rate_(p.velocity), rate_before_(p.velocity), turning_(p.spin), turning_before_(p.spin) {}
+  [[nodiscard]] const Vector2& velocity(const Particles&, std::size_t i) const { return rate_[i]; }
+  [[nodiscard]] double spin(const Particles&, std::size_t i) const { return turning_[i]; }
+
+  void move(Particles& p, std::size_t i, const Load& load, double gravity, double dt) {
+    const Vector2 force = load.force + p.mass[i] * (rate_[i] - rate_before_[i]) / dt;
+    const double moment = load.moment + p.inertia[i] * (turning_[i] - turning_before_[i]) / dt;
+    rate_before_[i] = rate_[i];
+    turning_before_[i] = turning_[i];
+    rate_[i] += dt * (force / (2 * p.mass[i]) + Vector2(0.0, -gravity / 2));
+    turning_[i] += dt * (moment / (2 * p.inertia[i]));
+    p.position[i] += rate_[i] * dt;
+    p.angle[i] += turning_[i] * dt;
+    p.velocity[i] = 2 * rate_[i] - rate_before_[i];
+    p.spin[i] = 2 * turning_[i] - turning_before_[i];
+  }
+
+ private:
+  std::vector<Vector2> rate_;           // [m/s], w_(t-1)
+  std::vector<Vector2> rate_before_;    // [m/s], w_(t-2)
+  std::vector<double> turning_;         // [rad/s]
+  std::vector<double> turning_before_;  // [rad/s]
+};
+
+template <class Motion>
+class YadeScheme {
+ public:
+  struct Memory {
+    Vector2 shear = Vector2::Zero();   // [N], the elastic shear force on body 2
+    Vector2 normal = Vector2::Zero();  // from body 1 to body 2, at the last evaluation
+    bool real = false;                 // as YADE calls an interaction that has touched and not yet parted
+  };
+  using PairMemory = Memory;
+  using SurfaceMemory = Memory;
+  static constexpr bool first_evaluation_advances = true;
+  static constexpr bool evaluates_again_when_the_bar_starts = false;
+
+  YadeScheme(const Case& setup, const World& world)
+      : motion_(world.particles),
+        pairs_(in_series(setup.particle_particle, setup.particle_particle)),
+        walls_(in_series(setup.particle_particle, setup.particle_wall)) {
+    if (!world.surfaces.bar) return;
+    half_ = {setup.bar->width / 2, setup.bar->length / 2};
+    centre_ = {setup.bar->centre_x, world.surfaces.bar->tip() + half_.y()};
+  }
+
+  void move(World& w) {
+    w.enter_impulses(w.dt, 1.0);
+    for (std::size_t i = 0; i < w.particles.count(); ++i) motion_.move(w.particles, i, w.loads[i], w.gravity, w.dt);
+    if (!w.surfaces.bar) return;
+    w.surfaces.bar->advance(w.dt);
+    bar_velocity_.y() = w.surfaces.bar->moving() ? -w.surfaces.bar->speed() : 0.0;
+    centre_ += bar_velocity_ * w.dt;
+  }
+
+  static void finish(World&) {}
+  static void after_pairs(World&) {}
+  void begin_evaluation() { spring_energy_ = 0.0; }
+  [[nodiscard]] double spring_energy() const { return spring_energy_; }
+
+  /// Ig2_Sphere_Sphere_ScGeom; body 1 is the one with the lower number.
+  void pair(World& w, PairContact<Memory>& contact, bool) {
+    Particles& p = w.particles;
+    const std::uint32_t i = contact.i;
+    const std::uint32_t j = contact.j;
+    Vector2 normal = p.position[j] - p.position[i];
+    const double reach = p.radius[i] + p.radius[j];
+    if (!contact.memory.real && reach * reach - normal.squaredNorm() < 0.0) return;
+    const double distance = normal.norm();
+    normal /= distance;
+    const double overlap = reach - distance;
+    const Vector2 point = p.position[i] + (p.radius[i] - 0.5 * overlap) * normal;
+    const Vector2 arm_i = point - p.position[i];
+    const Vector2 arm_j = point - p.position[j];
+    Vector2 force;
+    const Vector2 velocity = at_point(p, i, arm_i) - at_point(p, j, arm_j);
+    if (!react(contact.memory, pairs_, normal, overlap, velocity, w.dt, force)) return;
+    w.loads[i].force += -force;
+    w.loads[i].moment += -cross(arm_i, force);
+    w.loads[j].force += force;
+    w.loads[j].moment += cross(arm_j, force);
+    w.energy_ledger.contact_work += force.dot(velocity) * w.dt;
+  }
+
+  /// The surface is body 1.
+  void surface(World& w, SurfaceContact<Memory>& contact, bool) {
+    Particles& p = w.particles;
+    const std::uint32_t i = contact.i;
+    const Meeting at = contact.surface == Surface::bar ? meet_box(p.position[i], p.radius[i])
+                                                       : meet_wall(w, contact.surface, p.position[i], p.radius[i]);
+    if (!contact.memory.real && at.overlap < 0.0) return;
+    const Vector2 arm = at.point - p.position[i];
+    const Vector2 surface_velocity = contact.surface == Surface::bar ? bar_velocity_ : Vector2::Zero();
+    const Vector2 velocity = surface_velocity - at_point(p, i, arm);
+    Vector2 force;
+    if (!react(contact.memory, walls_, at.normal, at.overlap, velocity, w.dt, force)) return;
+    w.loads[i].force += force;
+    w.loads[i].moment += cross(arm, force);
+    w.totals.add(w.surfaces, contact.surface, p.position[i], force);
+    w.energy_ledger.contact_work += force.dot(velocity) * w.dt;
+  }
+
+ private:
+  struct Meeting {
+    Vector2 normal;  // from the surface to the disc
+    double overlap = 0.0;
+    Vector2 point;
+  };
+
+  /// As two materials with twice the values of particles, and of walls such that both in series give the case's, see
+  /// the adapter; YADE combines them as 1 / (1/a + 1/b). The friction coefficient goes through its angle.
+  static ContactParameters in_series(const ContactParameters& particle, const ContactParameters& wanted) {
+    const auto combined = [](double of_particle, double target) {
+      const double a = 2 * of_particle;
+      const double b = target == of_particle ? a : 1 / (1 / target - 1 / a);
+      return a > 0.0 || b > 0.0 ? 1 / ((a > 0.0 ? 1 / a : 0.0) + (b > 0.0 ? 1 / b : 0.0)) : 0.0;
+    };
+    return {.normal_stiffness = combined(particle.normal_stiffness, wanted.normal_stiffness),
+            .shear_stiffness = combined(particle.shear_stiffness, wanted.shear_stiffness),
+            .normal_damping = combined(particle.normal_damping, wanted.normal_damping),
+            .shear_damping = combined(particle.shear_damping, wanted.shear_damping),
+            .friction = std::tan(std::atan(wanted.friction))};
+  }
+
+  static double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+  /// Velocity of the disc's material at `arm` from its centre [m/s].
+  Vector2 at_point(const Particles& p, std::size_t i, const Vector2& arm) const {
+    const double spin = motion_.spin(p, i);
+    return motion_.velocity(p, i) + Vector2(-(spin * arm.y()), spin * arm.x());
+  }
+
+  /// Ig2_Wall_Sphere_ScGeom: the contact point is on the wall.
+  static Meeting meet_wall(const World& w, Surface surface, const Vector2& centre, double radius) {
+    switch (surface) {
+      case Surface::left:
+        return {{1.0, 0.0}, -(std::abs(centre.x()) - radius), {0.0, centre.y()}};
+      case Surface::right:
+        return {{-1.0, 0.0}, -(std::abs(centre.x() - w.surfaces.width) - radius), {w.surfaces.width, centre.y()}};
+      default:
+        return {{0.0, 1.0}, -(std::abs(centre.y()) - radius), {centre.x(), 0.0}};
+    }
+  }
+
+  /// Ig2_Box_Sphere_ScGeom, for a centre outside of the box: the contact point is half-way between both surfaces.
+  [[nodiscard]] Meeting meet_box(const Vector2& centre, double radius) const {
+    const Vector2 from_box = centre - centre_;
+    const Vector2 on_box = from_box.cwiseMax(-half_).cwiseMin(half_);
+    Vector2 towards = on_box - from_box;
+    const double distance = towards.norm();
+    towards /= distance;
+    const Vector2 of_box = on_box + centre_;
+    const Vector2 of_disc = centre + towards * radius;
+    return {-towards, radius - distance, 0.5 * (of_box + of_disc)};
+  }
+
+  /// The law; `velocity` of body 1 relative to body 2 at the contact point, `force` on body 2. False where they have
+  /// parted: the interaction is deleted, with its memory.
+  bool react(Memory& memory, const ContactParameters& k, const Vector2& normal, double overlap, const Vector2& velocity,
+             double dt, Vector2& force) {
+    if (overlap < 0.0) {
+      memory = {};
+      return false;
+    }
+    Vector2& shear = memory.shear;
+    if (memory.real) {  // turned with the contact, to first order
+      const double turn = cross(memory.normal, normal);
+      shear = {shear.x() - shear.y() * turn, shear.y() + shear.x() * turn};
+    }
+    memory.normal = normal;
+    memory.real = true;
+
+    const double approach = normal.dot(velocity);
+    const Vector2 sliding = velocity - approach * normal;
+    shear += k.shear_stiffness * dt * sliding;
+    const double push = k.normal_stiffness * overlap + k.normal_damping * approach;
+    const Vector2 normal_force = push < 0.0 ? Vector2(Vector2::Zero()) : Vector2(push * normal);
+    const double cap_squared = normal_force.squaredNorm() * (k.friction * k.friction);
+    Vector2 viscous = Vector2::Zero();
+    if (shear.squaredNorm() > cap_squared)
+      shear *= std::sqrt(cap_squared) / shear.norm();
+    else
+      viscous = k.shear_damping * sliding;
+    force = normal_force + shear + viscous;
+    spring_energy_ += 0.5 * k.normal_stiffness * overlap * overlap;
+    if (k.shear_stiffness > 0.0) spring_energy_ += 0.5 * shear.squaredNorm() / k.shear_stiffness;
+    return true;
+  }
+
+  Motion motion_;
+  ContactParameters pairs_;
+  ContactParameters walls_;
+  Vector2 half_ = Vector2::Zero();    // [m], half the box's width and length
+  Vector2 centre_ = Vector2::Zero();  // [m], of the box
+  Vector2 bar_velocity_ = Vector2::Zero();
+  double spring_energy_ = 0.0;
+};
+
+static_assert(ConventionalScheme<YadeScheme<YadeLeapFrog>> && ConventionalScheme<YadeScheme<YadeMemoryForce>>);
+
+}  // namespace crossdem
