@@ -110,9 +110,11 @@ void time_faults(const Case& c, const Fault& fault) {
 }
 
 void scheme_faults(const SchemeChoice& scheme, const Fault& fault) {
-  if (scheme.name != "paper" && scheme.readings != Readings{})
+  Readings others = scheme.readings;
+  if (scheme.name == "liggghts") others.attraction = {};  // LIGGGHTS knows both
+  if (scheme.name != "paper" && others != Readings{})
     fault("scheme.name",
-          "the scheme \"" + scheme.name + "\" has readings of its own: leave the others at their defaults");
+          "the scheme \"" + scheme.name + "\" has readings of its own: leave those here at their defaults");
   if (scheme.readings.update_order == UpdateOrder::in_turn &&
       scheme.readings.integrator == Integration::velocity_verlet)
     fault("scheme.integrator", "velocity_verlet moves all particles before all forces: it cannot go in_turn");

@@ -72,7 +72,7 @@ void Simulation::advance(long steps) { state_->stepper->advance(state_->world, s
 
 void Simulation::start_bar() {
   if (!state_->world.surfaces.bar) throw std::logic_error("there is no bar to start");
-  state_->stepper->start_bar(state_->world);
+  state_->world.surfaces.bar->start();
 }
 
 void Simulation::check() const { state_->world.check(); }

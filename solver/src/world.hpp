@@ -64,8 +64,6 @@ class Stepper {
   Stepper& operator=(const Stepper&) = delete;
 
   virtual void advance(World& world, long steps) = 0;
-  /// From the next step on the bar moves.
-  virtual void start_bar(World& world) { world.surfaces.bar->start(); }
   /// [J] in the springs of all contacts.
   [[nodiscard]] virtual double spring_energy(const World& world) const = 0;
 };

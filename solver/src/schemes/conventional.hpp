@@ -31,16 +31,7 @@ class ConventionalStepper final : public Stepper {
     evaluate(world, Scheme::first_evaluation_advances);
   }
 
-  void start_bar(World& world) override {
-    Stepper::start_bar(world);
-    evaluate_again_ = Scheme::evaluates_again_when_the_bar_starts;
-  }
-
   void advance(World& world, long steps) override {
-    if (evaluate_again_ && steps > 0) {
-      evaluate(world, false);
-      evaluate_again_ = false;
-    }
     for (long n = 0; n < steps; ++n) {
       scheme_.move(world);
       if (contacts_.outdated(world.particles, world.surfaces)) {
@@ -66,7 +57,6 @@ class ConventionalStepper final : public Stepper {
 
   Scheme scheme_;
   Contacts<typename Scheme::PairMemory, typename Scheme::SurfaceMemory> contacts_;
-  bool evaluate_again_ = false;
 };
 
 }  // namespace crossdem

@@ -24,8 +24,6 @@ class LiggghtsScheme {
                                               Vector2::Zero()};  // [m], by the bar's face
   };
   static constexpr bool first_evaluation_advances = false;
-  /// The bar starts with a new "run", whose setup evaluates the forces once more, with the velocities of the full step.
-  static constexpr bool evaluates_again_when_the_bar_starts = true;
 
   LiggghtsScheme(const Case& setup, World& world)
       : limit_force_(setup.scheme.readings.attraction == Attraction::clipped) {
@@ -35,8 +33,12 @@ class LiggghtsScheme {
       p.mass[i] = std::numbers::pi * p.radius[i] * p.radius[i] * density;
       p.inertia[i] = 0.5 * p.mass[i] * p.radius[i] * p.radius[i];
     }
-    if (world.surfaces.bar)
-      bar_.emplace(*setup.bar, world.surfaces.bar->tip(), *std::max_element(p.radius.begin(), p.radius.end()));
+    if (!world.surfaces.bar) return;
+    const auto [smallest, largest] = std::minmax_element(p.radius.begin(), p.radius.end());
+    bar_.emplace(*setup.bar, world.surfaces.bar->tip(), *largest);
+    listed_at_ = p.position;
+    const double skin = 0.5 * *smallest;  // of the adapter
+    trigger_squared_ = 0.25 * skin * skin;
   }
 
   /// Half a kick, the drift, the bar.
@@ -54,6 +56,7 @@ class LiggghtsScheme {
     bar.advance(w.dt);
     if (bar.moving()) bar_->translate(-bar.speed() * w.dt);
     bar_velocity_ = bar.moving() ? -bar.speed() : 0.0;
+    list_as_liggghts(p);
   }
 
   void finish(World& w) {
@@ -194,6 +197,20 @@ class LiggghtsScheme {
     w.energy_ledger.contact_work -= w.dt * (f.force.dot(p.velocity[i] - wall_velocity) - f.couple * arm * p.spin[i]);
   }
 
+  /// When LIGGGHTS makes its neighbour lists anew, it takes the edges of a mesh that moves from its nodes again; their
+  /// last bits weigh the velocity of the wall. It does so when a disc has moved by half the skin, and one step after
+  /// the mesh has.
+  void list_as_liggghts(const Particles& p) {
+    bool lists = bar_has_moved_far_;
+    for (std::size_t i = 0; i < p.count() && !lists; ++i)
+      lists = (p.position[i] - listed_at_[i]).squaredNorm() > trigger_squared_;
+    if (lists) {
+      listed_at_ = p.position;
+      bar_->measure();
+    }
+    bar_has_moved_far_ = bar_->travel() * bar_->travel() > trigger_squared_;
+  }
+
   static void half_kick(World& w) {
     Particles& p = w.particles;
     const double half = 0.5 * w.dt;
@@ -207,6 +224,9 @@ class LiggghtsScheme {
   bool limit_force_;
   std::optional<MeshBar> bar_;
   double bar_velocity_ = 0.0;  // [m/s], as the wall's contacts see it
+  std::vector<Vector2> listed_at_;
+  double trigger_squared_ = 0.0;  // [m^2]
+  bool bar_has_moved_far_ = false;
   double spring_energy_ = 0.0;
 };
 

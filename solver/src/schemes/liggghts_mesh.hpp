@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "crossdem/case.hpp"
 #include "crossdem/state.hpp"
@@ -31,16 +32,21 @@ class MeshTriangle {
   /// `owned`: the one edge that acts, of those that discs can reach; -1 for none. An edge acts in one of the two
   /// triangles that share it, that which comes later in the file; between triangles of one plane it acts in neither.
   MeshTriangle(const std::array<Vector3, 3>& nodes, int owned) : node_(nodes), owned_(owned) {
+    measure();
+    const Vector3 centre = (node_[0] + node_[1] + node_[2]) / 3.0;
+    double reach = 0.0;
+    for (const Vector3& corner : node_) reach = std::max(reach, (corner - centre).norm());
+    slack_ = -1e-8 / (2.0 * reach);
+  }
+
+  /// Edges and normal from the nodes as they are: after a translation they may differ in the last bit.
+  void measure() {
     for (int k = 0; k < 3; ++k) {
       edge_[k] = node_[(k + 1) % 3] - node_[k];
       length_[k] = scale_to_one(edge_[k]);
     }
     normal_ = edge_[0].cross(edge_[1]);
     scale_to_one(normal_);
-    const Vector3 centre = (node_[0] + node_[1] + node_[2]) / 3.0;
-    double reach = 0.0;
-    for (const Vector3& corner : node_) reach = std::max(reach, (corner - centre).norm());
-    slack_ = -1e-8 / (2.0 * reach);
   }
 
   void translate(double dy) {
@@ -124,6 +130,15 @@ class MeshBar {
 
   void translate(double dy) {
     for (MeshTriangle& triangle : triangles_) triangle.translate(dy);
+    travel_ += dy;
+  }
+
+  /// [m], since the triangles were measured.
+  [[nodiscard]] double travel() const { return travel_; }
+
+  void measure() {
+    for (MeshTriangle& triangle : triangles_) triangle.measure();
+    travel_ = 0.0;
   }
 
   /// Calls `act(face, contact)` for each face that the disc at `centre` is opposite of, or whose own edge it is.
@@ -151,6 +166,7 @@ class MeshBar {
   }
 
   std::vector<MeshTriangle> triangles_;
+  double travel_ = 0.0;
 };
 
 }  // namespace crossdem

@@ -66,7 +66,6 @@ class YadeScheme {
   using PairMemory = Memory;
   using SurfaceMemory = Memory;
   static constexpr bool first_evaluation_advances = true;
-  static constexpr bool evaluates_again_when_the_bar_starts = false;
 
   YadeScheme(const Case& setup, const World& world)
       : motion_(world.particles),
