@@ -103,7 +103,8 @@ void time_faults(const Case& c, const Fault& fault) {
     if (c.time.rest > 0.0) check_interval("time.rest_s", c.time.rest, step, key);
   };
   check_step("time.step_s", c.time.step);
-  for (const auto& [name, engine] : c.engines) check_step("engines." + name + ".step_s", engine.step);
+  for (const auto& [name, engine] : c.engines)
+    if (engine.step != c.time.step) check_step("engines." + name + ".step_s", engine.step);
   check_interval("time.penetration_s", c.time.penetration, c.time.sample_interval, "time.sample_interval_s");
   check_interval("time.penetration_s", c.time.penetration, c.time.frame_interval, "time.frame_interval_s");
   if (c.placed.empty() && c.packing.step != c.time.step) check_limit("packing.step_s", c.packing.step);

@@ -57,7 +57,7 @@ TEST(Abort, AParticleThatGoesThroughAWallWhileRunning) {
     expect_message(message, "steps of 0.0001 s; try a smaller time step");
   }
   Case fast_bar = small_case();
-  fast_bar.bar.speed = 70.0;
+  fast_bar.bar->speed = 70.0;
   expect_message(failure(fast_bar, small_disc({0.03, 0.03}, {0, 0}), 0.05), "or into the bar");
 }
 
@@ -72,7 +72,7 @@ TEST(Abort, KineticEnergyThatExplodes) {
 TEST(Abort, WhatWeightAndBarCanGiveIsNoExplosion) {
   EXPECT_FALSE(failure(small_case(), small_disc({0.03, 0.149}, {0, 0})).has_value());
   Case c = weightless();
-  c.bar.speed = 0.5;
+  c.bar->speed = 0.5;
   EXPECT_FALSE(failure(c, small_disc({0.03, 0.09}, {0, 0}), 0.1).has_value());
 }
 

@@ -24,7 +24,15 @@ json everything() {
          {"normal_spring", "overlap"},
          {"dashpot_velocity", "true_velocity"},
          {"initial_displacement", "zero"},
-         {"bar_corner", "faces_only"}}},
+         {"bar_corner", "faces_only"},
+         {"slip_cap", "total"},
+         {"torque_arm", "contact_point"},
+         {"integrator", "leap_frog"},
+         {"inertia", "sphere"}}},
+       {"answer", {{{"quantity", "rest"}, {"kind", "absolute"}, {"tolerance", 1e-3}, {"reason", "a"}}}},
+       {"difference",
+        {{{"engine", "yade"}, {"quantity", "rest"}, {"value", -0.1}, {"tolerance", 1e-3}, {"reason", "d"}}}},
+       {"twin", {{{"engine", "yade-averaged"}, {"limit_m", 0.0}, {"until_s", 0.1}, {"reason", "t"}}}},
        {"check",
         {{{"quantity", "mean_resistance"},
           {"kind", "relative"},
@@ -48,7 +56,7 @@ TEST(CanonicalCase, HoldsEveryValueThatWasSet) {
     merged.merge_patch(everything());
     return merged;
   }());
-  EXPECT_EQ(written["scheme"].size(), 10U);
+  EXPECT_EQ(written["scheme"].size(), 14U);
   EXPECT_EQ(written["engines"]["liggghts"]["step_s"], 5e-5) << "defaults are filled in";
 }
 
@@ -70,7 +78,7 @@ TEST(CanonicalCase, IsSortedAndWithoutWhiteSpace) {
   const std::string text = canonical_json(small_case());
   EXPECT_EQ(text.find_first_of(" \n\t"), std::string::npos);
   EXPECT_EQ(text, json::parse(text).dump());
-  EXPECT_EQ(text.rfind("{\"bar\":{\"centre_x_m\":0.03,", 0), 0U);
+  EXPECT_EQ(text.rfind("{\"answer\":[],\"bar\":{\"centre_x_m\":0.03,", 0), 0U);
 }
 
 /// 16 eta_s / m of the 4 mm disc: m / eta_s = 4.968e-4 s; times 6 / 16 and 2 / 16.

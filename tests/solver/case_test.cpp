@@ -54,10 +54,10 @@ TEST_P(CaseFault, IsTheOnlyOneReportedAndNamesItsKey) {
 INSTANTIATE_TEST_SUITE_P(
     Keys, CaseFault,
     testing::Values(Fault{"/bar/colour", "red",
-                          "bar.colour: unknown key; known here: centre_x_m, length_m, speed_m_s, width_m"},
+                          "bar.colour: unknown key; known here: centre_x_m, length_m, speed_m_s, tip_m, "
+                          "width_m"},
                     Fault{"/colour", "red", "colour: unknown key"},
                     Fault{"/contact/particle_wall/colour", 1, "contact.particle_wall.colour: unknown key"},
-                    Fault{"/bar", removed(), "bar: missing"},
                     Fault{"/contact/particle_wall/friction", removed(), "contact.particle_wall.friction: missing"},
                     Fault{"/schema_version", removed(), "schema_version: missing"},
                     Fault{"/schema_version", 2, "schema_version: this crossdem reads version 1, not 2"},
@@ -84,7 +84,9 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"/particles/diameters_m", {0.004, "x"}, "particles.diameters_m[1]: must be a finite number"},
         Fault{"/time/allow_above_eq32", 1, "time.allow_above_eq32: must be true or false, is 1"},
         Fault{"/check", json::object(), "check: must be a list of tables ([[check]]), is {}"},
-        Fault{"/scheme", {{"name", "leapfrog"}}, "scheme.name: must be paper, is \"leapfrog\""},
+        Fault{"/scheme",
+              {{"name", "leapfrog"}},
+              "scheme.name: must be one of paper, liggghts, yade, yade_averaged, is \"leapfrog\""},
         Fault{"/scheme",
               {{"lost_contact", "keep"}},
               "scheme.lost_contact: must be one of forget, keep_zero, keep_negative, is \"keep\""},
@@ -218,8 +220,8 @@ TEST(Case, DefaultsAreFilled) {
   const Case c = small_case();
   EXPECT_EQ(c.title, "small_bed");
   EXPECT_EQ(c.gravity, 9.80665);
-  EXPECT_EQ(c.bar.length, 0.15);
-  EXPECT_EQ(c.bar.centre_x, 0.03);
+  EXPECT_EQ(c.bar->length, 0.15);
+  EXPECT_EQ(c.bar->centre_x, 0.03);
   EXPECT_NEAR(c.time.sample_interval, 0.01, 1e-15);
   EXPECT_NEAR(c.time.frame_interval, 0.1, 1e-15);
   EXPECT_EQ(c.engines.at("yade").step, 5e-5);

@@ -28,7 +28,7 @@ void expect_balanced(const Simulation& s) {
 
 TEST(MomentumLedger, WallsBarAndWeightGiveTheChangeOfMomentumToRounding) {
   Case c = small_case();
-  c.bar.speed = 0.2;
+  c.bar->speed = 0.2;
   Simulation s(c, rows(), 0.03);
   s.advance(300);
   s.start_bar();

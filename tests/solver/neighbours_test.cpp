@@ -7,7 +7,7 @@
 #include <functional>
 #include <random>
 
-#include "scheme.hpp"
+#include "schemes/paper.hpp"
 #include "small_case.hpp"
 
 namespace crossdem::test {
@@ -89,35 +89,31 @@ Particles cloud() {
   return p;
 }
 
-/// A simulation whose list holds only what overlaps and is made anew in each step.
-World without_list(const Case& c, Particles particles, double bar_tip) {
-  const double dt = c.time.step;
+World world_of(const Case& c, Particles particles, double bar_tip) {
   World world{.particles = std::move(particles),
-              .surfaces = {.width = c.container.width, .bar = Bar(c.bar, bar_tip)},
-              .contacts = Contacts(SpringOwner::pair, 0.0),
+              .surfaces = {.width = c.container.width, .bar = Bar(c.bar.value(), bar_tip)},
               .particle_particle = c.particle_particle,
               .particle_wall = c.particle_wall,
               .gravity = c.gravity,
-              .dt = dt,
+              .dt = c.time.step,
               .loads = {},
               .totals = {},
               .momentum_ledger = {},
               .energy_ledger = {},
-              .kinetic_limit = 1.0,
-              .readings = {}};
+              .kinetic_limit = 1.0};
   Particles& p = world.particles;
-  for (std::size_t i = 0; i < p.count(); ++i) p.displacement[i] = p.velocity[i] * dt;
-  world.contacts.rebuild(p, world.surfaces);
+  for (std::size_t i = 0; i < p.count(); ++i) p.displacement[i] = p.velocity[i] * c.time.step;
   return world;
 }
 
 TEST(Neighbours, AListThatLastsGivesTheBitsOfOneMadeAnewEachStep) {
   Case c = small_case();
-  c.bar.speed = 0.5;
+  c.bar->speed = 0.5;
   Simulation listed(c, cloud(), 0.045);
-  World anew = without_list(c, cloud(), 0.045);
-  const PaperScheme<DefaultReadings> scheme;
-  Step<PaperScheme<DefaultReadings>> step(anew, scheme);
+  World anew = world_of(c, cloud(), 0.045);
+  PaperContacts only_overlapping(MemoryOwner::pair, 0.0);  // made anew whenever anything has moved
+  const PaperScheme scheme;
+  Step<PaperScheme> step(anew, only_overlapping, scheme);
   listed.start_bar();
   anew.surfaces.bar->start();
   for (int n = 0; n < 600; ++n) {
@@ -136,23 +132,23 @@ TEST(Contacts, AContactKeepsItsSpringsWhenTheListIsMadeAnew) {
   Particles p = small_disc({0.03, 0.0019}, {0, 0});
   p.add(small_radius, small_mass, {0.0339, 0.0019}, Vector2::Zero());
   const Surfaces surfaces{.width = 0.06, .bar = {}};
-  Contacts contacts(SpringOwner::pair, 0.001);
+  PaperContacts contacts(MemoryOwner::pair, 0.001);
   contacts.rebuild(p, surfaces);
-  contacts.pairs().at(0).spring = {1.0, 2.0, true};
-  contacts.on_surfaces().at(1).spring = {3.0, 4.0, true};
+  contacts.pairs().at(0).memory = {1.0, 2.0, true};
+  contacts.on_surfaces().at(1).memory = {3.0, 4.0, true};
   p.add(small_radius, small_mass, {0.026, 0.0019}, Vector2::Zero());  // a new neighbour of the first
   contacts.rebuild(p, surfaces);
   ASSERT_EQ(contacts.pairs().size(), 2U);
-  EXPECT_EQ(contacts.pairs()[0].spring.shear, 2.0);
-  EXPECT_FALSE(contacts.pairs()[1].spring.touching);
-  EXPECT_EQ(contacts.on_surfaces().at(1).spring.normal, 3.0);
-  EXPECT_FALSE(contacts.on_surfaces().at(2).spring.touching);
+  EXPECT_EQ(contacts.pairs()[0].memory.shear, 2.0);
+  EXPECT_FALSE(contacts.pairs()[1].memory.touching);
+  EXPECT_EQ(contacts.on_surfaces().at(1).memory.normal, 3.0);
+  EXPECT_FALSE(contacts.on_surfaces().at(2).memory.touching);
 }
 
 TEST(Contacts, TheListIsOutdatedBeforeTwoSurfacesCanHaveMetUnseen) {
   Particles p = small_disc({0.03, 0.02}, {0, 0});
   Surfaces surfaces{.width = 0.06, .bar = Bar({.width = 0.01, .length = 0.1, .centre_x = 0.03, .speed = 1.0}, 0.04)};
-  Contacts contacts(SpringOwner::pair, 0.001);
+  PaperContacts contacts(MemoryOwner::pair, 0.001);
   EXPECT_TRUE(contacts.outdated(p, surfaces)) << "there is no list yet";
   contacts.rebuild(p, surfaces);
   p.position[0].x() += 0.00049;  // two particles may have approached by twice this

@@ -44,7 +44,7 @@ TEST(Packing, HoldsTheMixOfTheCaseAtRestInTheContainer) {
   }
   EXPECT_EQ(bed.bed_height, top);
   EXPECT_GT(bed.contacts, 60U);
-  const Particles resting = at_rest(bed, c);
+  const Particles resting = particles_of(bed, c);
   EXPECT_EQ(kinetic_energy(resting), 0.0);
   EXPECT_EQ(resting.position, bed.position);
 }
@@ -123,6 +123,8 @@ class PackingFile : public testing::Test {
 TEST_F(PackingFile, IsReadBackBitForBit) {
   const Packing read = read_packing(csv(), few());
   EXPECT_EQ(read.position, bed.position);
+  EXPECT_EQ(read.velocity, bed.velocity);
+  EXPECT_EQ(read.spin, bed.spin);
   EXPECT_EQ(read.radius, bed.radius);
   EXPECT_EQ(read.bar_tip, bed.bar_tip);
   EXPECT_EQ(read.seed, 3U);
@@ -130,7 +132,7 @@ TEST_F(PackingFile, IsReadBackBitForBit) {
   EXPECT_EQ(read.kinetic_energy, bed.kinetic_energy);
   EXPECT_EQ(read.bed_height, bed.bed_height);
   EXPECT_EQ(read.settling, bed.settling);
-  EXPECT_EQ(lines_of(csv())[0], "id,x_m,y_m,radius_m");
+  EXPECT_EQ(lines_of(csv())[0], "id,x_m,y_m,radius_m,velocity_x_m_s,velocity_y_m_s,angular_velocity_rad_s");
 }
 
 TEST_F(PackingFile, RefusesAnotherHeader) {
@@ -138,23 +140,23 @@ TEST_F(PackingFile, RefusesAnotherHeader) {
   expect_refused("the first line must be id,x_m,y_m,radius_m");
 }
 
-TEST_F(PackingFile, RefusesRowsThatAreNotFourFiniteNumbers) {
-  for (const char* row :
-       {"1,0.01,0.02", "1,0.01,0.02,0.002,7", "1,0.01,x,0.002", "1,nan,0.02,0.002", "1,0.01,inf,0.002",
-        "1,0.01,0.02,0.002 ", "one,0.01,0.02,0.002", "1;0.01;0.02;0.002", "7,0.01,0.02,0.002"}) {
+TEST_F(PackingFile, RefusesRowsThatAreNotSevenFiniteNumbers) {
+  for (const char* row : {"1,0.01,0.02,0.002,0,0", "1,0.01,0.02,0.002,0,0,0,7", "1,0.01,x,0.002,0,0,0",
+                          "1,nan,0.02,0.002,0,0,0", "1,0.01,0.02,0.002,0,inf,0", "1,0.01,0.02,0.002,0,0,0 ",
+                          "one,0.01,0.02,0.002,0,0,0", "1;0.01;0.02;0.002;0;0;0", "7,0.01,0.02,0.002,0,0,0"}) {
     write_packing(bed, folder.path());
     spoil(3, row);
-    expect_refused("packing.csv: line 3: must be particle 1 as four finite numbers");
+    expect_refused("packing.csv: line 3: must be particle 1 as seven finite numbers");
   }
 }
 
 TEST_F(PackingFile, RefusesRadiiThatTheCaseDoesNotHave) {
-  spoil(3, "1,0.01,0.02,0.00201");
+  spoil(3, "1,0.01,0.02,0.00201,0,0,0");
   expect_refused("line 3: no particle of the case has the radius 0.00201");
 }
 
 TEST_F(PackingFile, RefusesParticlesOutsideTheContainer) {
-  for (const char* row : {"1,-0.001,0.02,0.002", "1,0.0601,0.02,0.002", "1,0.01,-0.001,0.002"}) {
+  for (const char* row : {"1,-0.001,0.02,0.002,0,0,0", "1,0.0601,0.02,0.002,0,0,0", "1,0.01,-0.001,0.002,0,0,0"}) {
     write_packing(bed, folder.path());
     spoil(3, row);
     expect_refused("line 3: the particle is outside the container");
@@ -180,7 +182,7 @@ TEST_F(PackingFile, RefusesABarThatStartsWithAParticleInside) {
   for (const std::string& line : lines_of(folder / "packing.json"))
     facts += line.find("bar_tip_m") == std::string::npos ? line : R"("bar_tip_m": 0.01,)";
   std::ofstream(folder / "packing.json") << facts;
-  expect_refused("packing.json: with bar_tip_m = 0.01 m particle ");
+  expect_refused("bar.tip_m: with its bottom face at 0.01 m particle ");
 }
 
 TEST_F(PackingFile, RefusesASeedThatIsNoSeed) {
@@ -192,7 +194,7 @@ TEST_F(PackingFile, RefusesASeedThatIsNoSeed) {
 
 TEST_F(PackingFile, RefusesAPenetrationThroughTheFloor) {
   Case deep = few();
-  deep.time.penetration = 100 * bed.bar_tip;  // at 0.01 m/s
+  deep.time.penetration = 100 * *bed.bar_tip;  // at 0.01 m/s
   const auto message = message_of<CaseError>([&] { read_packing(csv(), deep); });
   ASSERT_TRUE(message.has_value());
   EXPECT_EQ(message->rfind("time.penetration_s: the bar starts at ", 0), 0U) << *message;
@@ -200,13 +202,75 @@ TEST_F(PackingFile, RefusesAPenetrationThroughTheFloor) {
 
 TEST_F(PackingFile, ABedInWhichTheBarWouldReachTheFloorIsNotMade) {
   Case deep = few();
-  deep.time.penetration = 100 * bed.bar_tip;
+  deep.time.penetration = 100 * *bed.bar_tip;
   EXPECT_THROW(make_packing(deep, 3), CaseError);
 }
 
 TEST_F(PackingFile, AFileThatIsNotThereIsAFileError) {
   EXPECT_THROW(read_packing(folder / "none.csv", few()), FileError);
   EXPECT_THROW(read_packing(folder.path(), few()), FileError);
+}
+
+/// Two discs placed by hand, the second in flight.
+Case placed(const nlohmann::json& changes = nlohmann::json::object()) {
+  nlohmann::json root =
+      small_json({{"particles", {{"count", nullptr}, {"diameters_m", nullptr}, {"number_shares", nullptr}}}});
+  root["particle"] = {{{"x_m", 0.03}, {"y_m", 0.002}, {"radius_m", 0.002}},
+                      {{"x_m", 0.034},
+                       {"y_m", 0.0023},
+                       {"radius_m", 0.0025},
+                       {"velocity_y_m_s", 0.1},
+                       {"angular_velocity_rad_s", -3.0}}};
+  root.merge_patch(changes);
+  return read_case(root.dump());
+}
+
+TEST(PlacedParticles, StandInThePackingAsTheyAreGiven) {
+  const Packing packing = make_packing(placed(), 7);
+  EXPECT_EQ(packing.seed, 7U);
+  EXPECT_EQ(packing.radius, (std::vector<double>{0.002, 0.0025}));
+  EXPECT_EQ(packing.position[1], Vector2(0.034, 0.0023));
+  EXPECT_EQ(packing.velocity[1], Vector2(0.0, 0.1));
+  EXPECT_EQ(packing.spin[1], -3.0);
+  EXPECT_EQ(packing.contacts, 1U);
+  EXPECT_EQ(packing.settling, 0.0);
+  EXPECT_NEAR(packing.bar_tip.value(), 0.0048, 1e-15) << "the bar touches the topmost of them";
+  EXPECT_EQ(particles_of(packing, placed()).spin[1], -3.0);
+}
+
+TEST(PlacedParticles, TellTheirNumberAndDiametersThemselves) {
+  const Case c = placed();
+  EXPECT_EQ(c.particles.count, 2);
+  EXPECT_EQ(c.particles.diameters, (std::vector<double>{0.004, 0.005}));
+  EXPECT_EQ(c.time.rest, 0.0);
+  EXPECT_EQ(canonical_json(read_case(canonical_json(c))), canonical_json(c));
+  const auto refused = message_of<CaseError>([] { placed({{"particles", {{"count", 3}}}}); });
+  EXPECT_EQ(refused.value_or(""),
+            "particles: count, diameters_m and number_shares follow from the [[particle]] tables: leave them out");
+  EXPECT_NE(message_of<CaseError>([] {
+              placed({{"packing", {{"jitter_m", 0.0}}}});
+            })
+                .value_or("")
+                .find("packing: unknown key"),
+            std::string::npos);
+}
+
+TEST(PlacedParticles, NeedNoBar) {
+  const Case c = placed({{"bar", nullptr}});
+  EXPECT_FALSE(c.bar.has_value());
+  EXPECT_FALSE(make_packing(c, 1).bar_tip.has_value());
+}
+
+TEST(PlacedParticles, ABarStartsWhereTheCaseSays) {
+  EXPECT_EQ(make_packing(placed({{"bar", {{"tip_m", 0.01}}}}), 1).bar_tip, 0.01);
+  const auto refused = message_of<CaseError>([] { make_packing(placed({{"bar", {{"tip_m", 0.001}}}}), 1); });
+  EXPECT_EQ(refused.value_or("").substr(0, 54), "bar.tip_m: with its bottom face at 0.001 m particle 0 ");
+}
+
+TEST(PlacedParticles, OutsideTheContainerAreAFault) {
+  nlohmann::json outside = nlohmann::json::array({{{"x_m", -0.01}, {"y_m", 0.002}, {"radius_m", 0.002}}});
+  const auto refused = message_of<CaseError>([&] { placed({{"particle", outside}}); });
+  EXPECT_EQ(refused.value_or(""), "particle[0]: its centre is outside the container");
 }
 
 }  // namespace

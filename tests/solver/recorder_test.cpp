@@ -126,14 +126,15 @@ TEST_F(Recorded, MotionHoldsTheParticlesOfThePacking) {
   }
   const std::vector<double> tip = motion.numbers("/observables/bar/tip/value");
   EXPECT_EQ(tip[0], bed.bar_tip);
-  EXPECT_NEAR(tip[2], bed.bar_tip - 0.002, 1e-15);
+  EXPECT_NEAR(tip[2], *bed.bar_tip - 0.002, 1e-15);
 }
 
 TEST_F(Recorded, TablesHaveTheirColumnsAndARowPerSample) {
   const std::vector<std::string> resistance = lines_of(*folder / "resistance.csv");
   ASSERT_EQ(resistance.size(), 22U);
   EXPECT_EQ(resistance[0],
-            "time_s,depth_m,force_x_N,force_y_N,tip_force_y_N,shaft_force_y_N,contacts,kinetic_energy_J");
+            "time_s,depth_m,force_x_N,force_y_N,tip_force_y_N,shaft_force_y_N,floor_force_y_N,contacts,"
+            "kinetic_energy_J");
   const std::vector<std::string> ledger = lines_of(*folder / "ledger.csv");
   ASSERT_EQ(ledger.size(), 22U);
   EXPECT_EQ(numbers_of(ledger[1]).size(), 22U);
@@ -210,9 +211,18 @@ TEST(ResistanceFile, ARowHoldsTheForceOnTheBarAsASumAndInItsParts) {
   ResistanceFile(folder / "resistance.csv").row(0.5, 0.005, s);
   const std::vector<double> row = numbers_of(lines_of(folder / "resistance.csv").at(1));
   // shaft: e_s = 250 x -1e-5, dashpot 0.387 x -0.1
-  const double expected[] = {0.5, 0.005, 0.1, 0.1 - 0.0412, 0.1, -0.0412, 0.0};
-  for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(row.at(k), expected[k], 1e-12) << "column " << k;
-  EXPECT_NEAR(row.at(7), kinetic_energy(s.particles()), 0.0);
+  const double expected[] = {0.5, 0.005, 0.1, 0.1 - 0.0412, 0.1, -0.0412, 0.0, 0.0};
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(row.at(k), expected[k], 1e-12) << "column " << k;
+  EXPECT_NEAR(row.at(8), kinetic_energy(s.particles()), 0.0);
+}
+
+TEST(ResistanceFile, ADiscThatLiesOnTheFloorPushesItDownByItsWeight) {
+  const Case c = small_case();
+  Simulation s(c, small_disc({0.03, small_radius - small_mass * c.gravity / 1000}, {0, 0}), std::nullopt);
+  s.advance(1);
+  const TemporaryFolder folder;
+  ResistanceFile(folder / "resistance.csv").row(0.0, 0.0, s);
+  EXPECT_NEAR(numbers_of(lines_of(folder / "resistance.csv").at(1)).at(6), -small_mass * c.gravity, 1e-12);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # usage: same_bits.sh SOLVER SOURCE_DIR WORK_DIR
-# Compiles the solver with g++ -O0 and with clang++ -O2, settles and runs a small bed with each and with SOLVER (g++ -O3
-# in a release build), and compares what they wrote, bit for bit.
+# Compiles the solver with g++ -O0 and with clang++ -O2, settles a small bed and runs it by every scheme with each and with
+# SOLVER (g++ -O3 in a release build), and compares what they wrote, bit for bit.
 set -euo pipefail
 own_solver=$1 source_dir=$2 work_dir=$3
 small_bed=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/small_bed.json
@@ -13,9 +13,11 @@ hash_results() {
   local results=$work_dir/$1
   mkdir -p "$results"
   "$2" pack "$small_bed" --seed 1 --output "$results/packing"
-  "$2" run "$small_bed" --packing "$results/packing/packing.csv" --output "$results/run"
-  (cd "$results" && sha256sum packing/packing.csv packing/packing.json run/resistance.csv run/ledger.csv) \
-    >"$work_dir/$1.sha256"
+  for scheme in paper liggghts yade yade_averaged; do
+    sed "s/\"schema_version\": 1/&, \"scheme\": {\"name\": \"$scheme\"}/" "$small_bed" |
+      "$2" run - --packing "$results/packing/packing.csv" --output "$results/$scheme"
+  done
+  (cd "$results" && sha256sum packing/* */resistance.csv */ledger.csv) >"$work_dir/$1.sha256"
 }
 
 # compile_and_hash NAME COMPILER FLAGS
