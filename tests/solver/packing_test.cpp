@@ -214,7 +214,8 @@ TEST_F(PackingFile, AFileThatIsNotThereIsAFileError) {
 /// Two discs placed by hand, the second in flight.
 Case placed(const nlohmann::json& changes = nlohmann::json::object()) {
   nlohmann::json root =
-      small_json({{"particles", {{"count", nullptr}, {"diameters_m", nullptr}, {"number_shares", nullptr}}}});
+      small_json({{"packing", nullptr},
+                  {"particles", {{"count", nullptr}, {"diameters_m", nullptr}, {"number_shares", nullptr}}}});
   root["particle"] = {{{"x_m", 0.03}, {"y_m", 0.002}, {"radius_m", 0.002}},
                       {{"x_m", 0.034},
                        {"y_m", 0.0023},
