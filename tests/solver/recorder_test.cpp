@@ -158,7 +158,7 @@ TEST_F(Recorded, TablesHaveTheirColumnsAndARowPerSample) {
       EXPECT_NEAR(received, account[axis], 1e-15);
       EXPECT_LT(std::abs(account[axis + 12]), 1e-15) << "momentum residual";
     }
-    EXPECT_EQ(account[15], row[7]) << "kinetic energy";
+    EXPECT_EQ(account[15], row[8]) << "kinetic energy";
   }
   EXPECT_TRUE(pushed);
 }
