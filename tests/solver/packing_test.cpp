@@ -215,6 +215,7 @@ TEST_F(PackingFile, AFileThatIsNotThereIsAFileError) {
 Case placed(const nlohmann::json& changes = nlohmann::json::object()) {
   nlohmann::json root =
       small_json({{"packing", nullptr},
+                  {"time", {{"rest_s", nullptr}}},
                   {"particles", {{"count", nullptr}, {"diameters_m", nullptr}, {"number_shares", nullptr}}}});
   root["particle"] = {{{"x_m", 0.03}, {"y_m", 0.002}, {"radius_m", 0.002}},
                       {{"x_m", 0.034},
