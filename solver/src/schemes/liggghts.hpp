@@ -59,7 +59,7 @@ class LiggghtsScheme {
     list_as_liggghts(p);
   }
 
-  void finish(World& w) {
+  static void finish(World& w) {
     half_kick(w);
     w.enter_impulses(0.5 * w.dt, 0.5);
   }

@@ -29,9 +29,10 @@ struct MeshContact {
 
 class MeshTriangle {
  public:
-  /// `owned`: the one edge that acts, of those that discs can reach; -1 for none. An edge acts in one of the two
+  /// `owned`: the one edge that acts, of those that discs can reach. An edge acts in one of the two
   /// triangles that share it, that which comes later in the file; between triangles of one plane it acts in neither.
-  MeshTriangle(const std::array<Vector3, 3>& nodes, int owned) : node_(nodes), owned_(owned) {
+  // NOLINTNEXTLINE(modernize-pass-by-value): an array of doubles gains nothing by a move
+  MeshTriangle(const std::array<Vector3, 3>& nodes, std::optional<std::size_t> owned) : node_(nodes), owned_(owned) {
     measure();
     const Vector3 centre = (node_[0] + node_[1] + node_[2]) / 3.0;
     double reach = 0.0;
@@ -41,7 +42,7 @@ class MeshTriangle {
 
   /// Edges and normal from the nodes as they are: after a translation they may differ in the last bit.
   void measure() {
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       edge_[k] = node_[(k + 1) % 3] - node_[k];
       length_[k] = scale_to_one(edge_[k]);
     }
@@ -73,13 +74,13 @@ class MeshTriangle {
       return to_point(found, centre, centre - normal_ * height);
     }
     // Outside of edge k, opposite to node k + 2, are the points that only that node's coordinate excludes.
-    for (int k = 0; k < 3; ++k)
+    for (std::size_t k = 0; k < 3; ++k)
       if (inside[k] && inside[(k + 1) % 3]) return edge_contact(found, centre, k);
     return std::nullopt;
   }
 
  private:
-  [[nodiscard]] std::optional<MeshContact> edge_contact(MeshContact found, const Vector3& centre, int k) const {
+  [[nodiscard]] std::optional<MeshContact> edge_contact(MeshContact found, const Vector3& centre, std::size_t k) const {
     const double along = dot_in_order(centre - node_[k], edge_[k]);
     if (k != owned_ || along < -1e-10 || along > length_[k] + 1e-10) return std::nullopt;
     found.barycentric[(k + 2) % 3] = 0.;
@@ -108,7 +109,7 @@ class MeshTriangle {
   std::array<double, 3> length_{};
   Vector3 normal_;
   double slack_ = 0.0;  // how far outside counts as on the face, in barycentric coordinates
-  int owned_;
+  std::optional<std::size_t> owned_;
 };
 
 /// Left, right and bottom face in this order, two triangles each.
@@ -161,8 +162,10 @@ class MeshBar {
     const Vector3 end_back(end.x(), end.y(), -half);
     const Vector3 end_front(end.x(), end.y(), half);
     const Vector3 start_front(start.x(), start.y(), half);
-    triangles_.emplace_back(std::array{start_back, end_back, end_front}, owns_end ? 1 : -1);
-    triangles_.emplace_back(std::array{start_back, end_front, start_front}, owns_start ? 2 : -1);
+    triangles_.emplace_back(std::array{start_back, end_back, end_front},
+                            owns_end ? std::optional<std::size_t>(1) : std::nullopt);
+    triangles_.emplace_back(std::array{start_back, end_front, start_front},
+                            owns_start ? std::optional<std::size_t>(2) : std::nullopt);
   }
 
   std::vector<MeshTriangle> triangles_;

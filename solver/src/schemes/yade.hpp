@@ -157,7 +157,7 @@ class YadeScheme {
   static double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
   /// Velocity of the disc's material at `arm` from its centre [m/s].
-  Vector2 at_point(const Particles& p, std::size_t i, const Vector2& arm) const {
+  [[nodiscard]] Vector2 at_point(const Particles& p, std::size_t i, const Vector2& arm) const {
     const double spin = motion_.spin(p, i);
     return motion_.velocity(p, i) + Vector2(-(spin * arm.y()), spin * arm.x());
   }
