@@ -1,0 +1,267 @@
+"""The paper's scheme once more, in plain Python, equation by equation: what the native solver is checked against.
+
+Written from the paper (Eqs 1-24) and the list of its readings, not from the solver: every pair is looked at in every
+step, and nothing is fast. Good for a few dozen particles. What it shares with the solver is the order of the sums, so
+that the two can come to the same bits. Units are SI; angles count counter-clockwise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from ..adapters.motion_file import Motion
+from ..adapters.packing import Packing
+from ..adapters.schedule import Schedule
+
+
+def paper_reference(case: dict, packing: Packing) -> tuple[Motion, pd.DataFrame]:
+    """The motion at the frames of the resolved `case`, and the forces at its samples as of the step that ends there.
+
+    The table has time_s, force_x_N and force_y_N (on the bar, > 0 is up) and floor_force_y_N (on the floor, < 0 is
+    down). The time step is the case's own.
+    """
+    assert case["scheme"]["name"] == "paper"
+    schedule = Schedule.of(case, case["time"]["step_s"])
+    frame_s, sample_s = case["time"]["frame_interval_s"], case["time"]["sample_interval_s"]
+    bed = _Bed(case, packing)
+    for _ in range(schedule.rest):
+        bed.step()
+    bed.start_bar()
+    frames, samples = [], []
+    for step in range(schedule.penetration + 1):
+        if step > 0:
+            bed.step()
+        if step % schedule.frame == 0:
+            frames.append((len(frames) * frame_s, *bed.frame()))
+        if step % schedule.sample == 0:
+            samples.append((len(samples) * sample_s, *bed.bar_force, bed.floor_force))
+    time_s, position, velocity, spin, angle, tip = map(np.array, zip(*frames))
+    motion = Motion(time_s, position, velocity, spin, angle, None if bed.bar is None else tip)
+    columns = ["time_s", "force_x_N", "force_y_N", "floor_force_y_N"]
+    return motion, pd.DataFrame(samples, columns=columns)
+
+
+class _Touch(NamedTuple):
+    """What particle i touches, as seen from i."""
+
+    partner: int | str  # another particle, or a wall or the bar by name
+    law: dict  # the parameters of the contact
+    overlap: float  # [m] > 0
+    cos: float  # of alpha: the direction from i's centre to the partner
+    sin: float
+
+
+class _Bed:
+    """Particles, walls and bar, and the springs of their contacts. Motions and loads have entries x, y, rotation."""
+
+    def __init__(self, case: dict, packing: Packing):
+        self.case, self.reading = case, case["scheme"]
+        self.dt = case["time"]["step_s"]
+        self.bar = case.get("bar")
+        self.tip = self.tip_at_start = packing.bar_tip_m
+        self.bar_steps = 0
+        self.bar_speed = 0.0  # [m/s] downwards
+
+        table = packing.particles
+        self.radius = table["radius_m"].tolist()
+        self.particles = range(len(self.radius))
+        density, thickness = case["particles"]["density_kg_m3"], case["container"]["thickness_m"]
+        share = {"disc": 1 / 2, "sphere": 2 / 5}[self.reading["inertia"]]
+        self.mass = [density * math.pi * r * r * thickness for r in self.radius]
+        self.inertia = [share * m * r * r for m, r in zip(self.mass, self.radius)]
+        self.position = [[x, y, 0.0] for x, y in zip(table["x_m"], table["y_m"])]
+        velocity = ["velocity_x_m_s", "velocity_y_m_s", "angular_velocity_rad_s"]
+        self.velocity = table[velocity].to_numpy().tolist()
+        before = self.dt if self.reading["initial_displacement"] == "velocity" else 0.0
+        self.displacement = [[before * component for component in v] for v in self.velocity]
+
+        # (particle, partner): (e_n, e_s); "in turn" has two entries for a pair
+        self.springs = {
+            (i, touch.partner): (touch.law["normal_stiffness_N_m"] * touch.overlap, 0.0)
+            for i in self.particles
+            for touch in (*self.neighbours(i, self.particles), *self.surfaces(i))
+        }
+        self.clear_loads()
+        if self.reading["integrator"] == "velocity_verlet":
+            # its first half kick: by the springs as they are
+            self.collect_all(lambda i, touch: (self.springs[i, touch.partner][0], 0.0))
+
+    def start_bar(self) -> None:
+        self.bar_speed = self.bar["speed_m_s"] if self.bar else 0.0
+
+    def frame(self) -> tuple:
+        """Position, velocity, spin and angle of every particle, and the height of the bar's bottom face."""
+        position, velocity = [p[:2] for p in self.position], [v[:2] for v in self.velocity]
+        spin, angle = [v[2] for v in self.velocity], [p[2] for p in self.position]
+        return position, velocity, spin, angle, self.tip
+
+    def step(self) -> None:
+        """The bar moves, then forces act and particles move."""
+        if self.reading["integrator"] == "velocity_verlet":
+            for i in self.particles:
+                self.accelerate(i, self.dt / 2)
+                self.displace(i, averaged=False)
+        if self.bar:
+            self.bar_steps += 1 if self.bar_speed else 0
+            self.tip = self.tip_at_start - self.bar_speed * (self.bar_steps * self.dt)
+        self.clear_loads()
+        self.springs_before, self.springs = self.springs, {}  # what does not touch is forgotten
+        if self.reading["update_order"] == "in_turn":
+            for i in self.particles:
+                for touch in (*self.neighbours(i, self.particles), *self.surfaces(i)):
+                    self.receive(i, touch, *self.force(i, touch))
+                self.move(i)
+        else:
+            self.collect_all(self.force)
+            for i in self.particles:
+                self.move(i)
+
+    def collect_all(self, force: Callable) -> None:
+        """The loads of all contacts, each pair once."""
+        for i in self.particles:
+            for touch in self.neighbours(i, self.particles[i + 1 :]):
+                f_n, f_s = force(i, touch)
+                self.receive(i, touch, f_n, f_s)
+                seen_from_j = touch._replace(cos=-touch.cos, sin=-touch.sin)
+                self.receive(touch.partner, seen_from_j, f_n, f_s)
+        for i in self.particles:
+            for touch in self.surfaces(i):
+                self.receive(i, touch, *force(i, touch))
+
+    def neighbours(self, i: int, others: range) -> Iterator[_Touch]:
+        """Those of `others` in contact with particle i."""
+        x, y, _ = self.position[i]
+        r, law = self.radius[i], self.case["contact"]["particle_particle"]
+        for j in others:
+            dx, dy = self.position[j][0] - x, self.position[j][1] - y
+            reach = r + self.radius[j]
+            if dx * dx + dy * dy < reach * reach and j != i:
+                distance = math.sqrt(dx * dx + dy * dy)
+                yield _Touch(j, law, reach - distance, dx / distance, dy / distance)
+
+    def surfaces(self, i: int) -> Iterator[_Touch]:
+        """Walls and bar in contact with particle i."""
+        x, y, _ = self.position[i]
+        r, law = self.radius[i], self.case["contact"]["particle_wall"]
+        width = self.case["container"]["width_m"]
+        if x < r:
+            yield _Touch("left", law, r - x, -1.0, 0.0)
+        if width - x < r:
+            yield _Touch("right", law, r - (width - x), 1.0, 0.0)
+        if y < r:
+            yield _Touch("floor", law, r - y, 0.0, -1.0)
+        if self.bar:
+            dx, dy = self.to_bar(x, y)
+            distance = math.sqrt(dx * dx + dy * dy)
+            at_corner = dx != 0 and dy != 0
+            if distance < r and not (at_corner and self.reading["bar_corner"] == "faces_only"):
+                yield _Touch("bar", law, r - distance, dx / distance, dy / distance)
+
+    def to_bar(self, x: float, y: float) -> tuple[float, float]:
+        """From (x, y) to the nearest point of the rectangle."""
+        centre, half = self.bar["centre_x_m"], self.bar["width_m"] / 2
+        top = self.tip + self.bar["length_m"]
+        return min(max(x, centre - half), centre + half) - x, min(max(y, self.tip), top) - y
+
+    def clear_loads(self) -> None:
+        self.load = [[0.0, 0.0, 0.0] for _ in self.particles]  # X, Y, M
+        self.bar_force, self.floor_force = (0.0, 0.0), 0.0
+
+    def receive(self, i: int, touch: _Touch, f_n: float, f_s: float) -> None:
+        """Eqs 10-12."""
+        x = -f_n * touch.cos + f_s * touch.sin
+        y = -f_n * touch.sin - f_s * touch.cos
+        load = self.load[i]
+        load[0] += x
+        load[1] += y
+        load[2] -= self.arm(i, touch) * f_s
+        if touch.partner == "bar":
+            self.bar_force = (self.bar_force[0] - x, self.bar_force[1] - y)
+        elif touch.partner == "floor":
+            self.floor_force -= y
+
+    def arm(self, i: int, touch: _Touch) -> float:
+        """From i's centre to where the shear force acts."""
+        to_contact_point = self.reading["torque_arm"] == "contact_point"
+        return self.radius[i] - (touch.overlap / 2 if to_contact_point else 0.0)
+
+    def relative(self, motion: list, i: int, touch: _Touch, bar_motion: float) -> tuple:
+        """Eqs 1, 2 for the displacements of a step, or for velocities."""
+        x, y, turn = motion[i]
+        turning = self.arm(i, touch) * turn
+        if touch.partner == "bar":
+            y -= bar_motion
+        elif isinstance(touch.partner, int):
+            x_j, y_j, turn_j = motion[touch.partner]
+            x, y = x - x_j, y - y_j
+            turning += self.arm(touch.partner, touch) * turn_j
+        return x * touch.cos + y * touch.sin, -x * touch.sin + y * touch.cos + turning
+
+    def force(self, i: int, touch: _Touch) -> tuple[float, float]:
+        """Eqs 1-9: f_n and f_s of one contact."""
+        reading, law, dt = self.reading, touch.law, self.dt
+        u_n, u_s = self.relative(self.displacement, i, touch, -self.bar_speed * dt)
+        damped_n, damped_s = u_n, u_s
+        e_n, e_s = self.springs_before.get((i, touch.partner), (None, None))
+        if e_n is None:
+            e_n = e_s = 0.0
+            u_s *= {  # Eq 4
+                "clamped_share": min(touch.overlap / u_n, 1.0) if u_n > 0 else 0.0,
+                "raw_share": touch.overlap / u_n if u_n != 0 else 0.0,
+                "whole_step": 1.0,
+            }[reading["first_contact_shear"]]
+            u_n = touch.overlap  # Eq 3
+            damped_s = u_s
+            if reading["first_contact_normal"] == "spring_and_dashpot":
+                damped_n = u_n
+        if reading["dashpot_velocity"] == "true_velocity":
+            v_n, v_s = self.relative(self.velocity, i, touch, -self.bar_speed)
+            damped_n, damped_s = v_n * dt, v_s * dt
+
+        e_n += law["normal_stiffness_N_m"] * u_n  # Eq 5
+        if reading["normal_spring"] == "overlap":
+            e_n = law["normal_stiffness_N_m"] * touch.overlap
+        if e_n < 0:  # Eq 8
+            if reading["lost_contact"] != "forget":
+                kept = e_n if reading["lost_contact"] == "keep_negative" else 0.0
+                self.springs[i, touch.partner] = (kept, 0.0)
+            return 0.0, 0.0
+        f_n = e_n + law["normal_damping_N_s_m"] * damped_n / dt  # Eq 6
+        if reading["attraction"] == "clipped":
+            f_n = max(f_n, 0.0)
+
+        e_s += law["shear_stiffness_N_m"] * u_s  # Eq 7
+        f_s = e_s + law["shear_damping_N_s_m"] * damped_s / dt
+        cap = law["friction"] * (abs(f_n) if reading["slip_cap"] == "total" else e_n)
+        if abs(e_s) > cap:  # Eq 9
+            f_s = e_s = math.copysign(cap, e_s)
+        self.springs[i, touch.partner] = (e_n, e_s)
+        return f_n, f_s
+
+    def move(self, i: int) -> None:
+        """Eqs 13-24 for particle i; velocity Verlet has moved it before, and gives it the second half of its kick."""
+        integrator = self.reading["integrator"]
+        if integrator == "velocity_verlet":
+            return self.accelerate(i, self.dt / 2)
+        self.accelerate(i, self.dt)
+        self.displace(i, averaged=integrator == "averaged_displacement")
+
+    def accelerate(self, i: int, dt: float) -> None:
+        """Eqs 13-18."""
+        x, y, moment = self.load[i]
+        weight = self.case["gravity_m_s2"]
+        acceleration = (x / self.mass[i], y / self.mass[i] - weight, moment / self.inertia[i])
+        self.velocity[i] = [v + a * dt for v, a in zip(self.velocity[i], acceleration)]
+
+    def displace(self, i: int, averaged: bool) -> None:
+        """Eqs 19-24; if not averaged, a step's displacement is velocity times time."""
+        moved = [v * self.dt for v in self.velocity[i]]
+        if averaged:
+            moved = [(old + new) / 2 for old, new in zip(self.displacement[i], moved)]
+        self.displacement[i] = moved
+        self.position[i] = [p + u for p, u in zip(self.position[i], moved)]
