@@ -1,0 +1,81 @@
+"""The horizon for people and programs: horizon.html (self-contained), .png, .csv, .json, and the terminal."""
+
+from __future__ import annotations
+
+import json
+from functools import partial
+from pathlib import Path
+
+from markupsafe import Markup
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from crossdem.adapters.case import Case
+
+from . import horizon_tables as tables
+from .colours import engine_styles
+from .drawing import png_figure, svg
+from .horizon import Horizon
+from .horizon_figure import draw_growth
+from .pages import render, write_whole
+from .record import libraries, plain
+from .wording import printable
+
+WIDE_PX, NARROW_PX = (900, 420), (380, 340)
+
+
+def write_horizon(case: Case, horizon: Horizon, folder: Path) -> Path:
+    """Write the four files into `folder`, each whole or not at all; returns the path of the page, written last."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_whole(folder / "horizon.csv", tables.curves(horizon).to_csv(index=False).encode())
+    about = {"name": case.name, "title": case.resolved["title"], "hash": case.hash}
+    content = plain({"schema_version": 1, "case": about} | tables.record(horizon))
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    write_whole(folder / "horizon.json", (text + "\n").encode())
+    draw = partial(draw_growth, horizon)
+    picture = png_figure(lambda figure: draw(figure.add_subplot()), WIDE_PX)
+    write_whole(folder / "horizon.png", picture)
+    engines = [one.engine for one in horizon.engines]
+    values = {
+        "horizon": page_values(horizon),
+        "title": case.resolved["title"],
+        "case": case,
+        "tone": "differs" if horizon.strays else "finding",
+        "engines": engines,
+        "colours": {name: style.colour for name, style in engine_styles(engines).items()},
+        "libraries": libraries(),
+    }
+    write_whole(folder / "horizon.html", render("horizon.html", values).encode())
+    return folder / "horizon.html"
+
+
+def page_values(horizon: Horizon) -> dict:
+    """What any page shows of a horizon."""
+    draw = partial(draw_growth, horizon)
+    return tables.values(horizon) | {
+        "growth_wide": Markup(svg(draw, WIDE_PX)),
+        "growth_narrow": Markup(svg(draw, NARROW_PX)),
+    }
+
+
+def print_horizon(horizon: Horizon, page: Path, console: Console | None = None) -> None:
+    console = console or Console()
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for title in (
+        "engine",
+        "outcome",
+        "difference to its native scheme",
+        "growth",
+        "twin 1e-9 m off",
+        "horizon",
+    ):
+        table.add_column(title)
+    for row in tables.rows(horizon):
+        table.add_row(*(Text(printable(cell)) for cell in row[:-1]))
+    console.print(table)
+    for row in tables.rows(horizon):
+        if row.remark:
+            console.print(Text(printable(f"{row.engine}: {row.remark}"), style="dim"))
+    console.print(Text(printable(tables.sentence(horizon)), style="bold"))
+    console.print(Text(f"Report: {page}"), soft_wrap=True)

@@ -1,0 +1,90 @@
+"""Variants of a case, run side by side: what attribution, horizon and stability map have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from crossdem.adapters.case import Case
+from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.packing import Packing
+from crossdem.adapters.run import RunRequest, run_all
+from crossdem.adapters.solver import SolverError
+from crossdem.adapters.workspace import Workspace
+
+from .progress import ProgressDisplay
+from .runs import settle
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A case, as a rule with some values changed, in one engine."""
+
+    name: str  # as people read it, and the only one of that name
+    case: Case
+    engine: str = "native"
+
+
+@dataclass(frozen=True)
+class VariantRun:
+    """What became of a variant on one packing: a dataset's folder, or why there is none."""
+
+    variant: Variant
+    packing: Packing
+    folder: Path | None
+    failure: str | None
+
+    def dataset(self) -> Dataset:
+        """Read anew each time: a walk through many variants would not go into memory."""
+        return Dataset.read(self.folder)
+
+
+def run_variants(
+    case: Case,
+    pairs: Sequence[tuple[Variant, Packing]],
+    workspace: Workspace,
+    jobs: int,
+    display: ProgressDisplay,
+) -> list[VariantRun]:
+    """Run or reuse each variant of `case` on its packing, in their order. Variants that are the same are run once.
+
+    Runs of `case` itself lie in runs/, as those of `crossdem check`; those of other cases apart, in variants/runs/.
+    """
+    requests: dict[tuple[str, str, str], RunRequest] = {}
+    names: dict[int, str] = {}
+    for variant, packing in pairs:
+        request = RunRequest(variant.case, packing, variant.engine)
+        kept = requests.setdefault(_identity(variant, packing), request)
+        names.setdefault(id(kept), f"{variant.name}, seed {packing.seed}")
+    found = {}
+    for folder, wanted in ((workspace.root / "variants", False), (workspace.root, True)):
+        some = {key: entry for key, entry in requests.items() if (key[0] == case.hash) == wanted}
+        results = run_all(
+            list(some.values()),
+            folder,
+            jobs,
+            lambda request, *progress: display.update(names[id(request)], *progress),
+        )
+        found |= dict(zip(some, results))
+    if reused := sum(result.status == "reused" for result in found.values()):
+        display.say(f"{reused} of {len(found)} runs were there already")
+    return [
+        VariantRun(variant, packing, result.dataset_folder, result.failure)
+        for variant, packing in pairs
+        for result in [found[_identity(variant, packing)]]
+    ]
+
+
+def settled(
+    case: Case, seeds: int, workspace: Workspace, jobs: int, display: ProgressDisplay
+) -> list[Packing]:
+    """The packings of seeds 1, 2, ... Raises CaseError, and SolverError where one could not be made."""
+    packings, unsettled = settle(case, seeds, workspace, jobs, display)
+    for seed, why in unsettled.items():
+        raise SolverError(f"packing of seed {seed}: {why}")
+    return packings
+
+
+def _identity(variant: Variant, packing: Packing) -> tuple[str, str, str]:
+    return variant.case.hash, packing.hash, variant.engine
