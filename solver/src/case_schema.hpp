@@ -14,7 +14,8 @@
 namespace crossdem::schema {
 
 /// The native schemes; the first is the default.
-inline constexpr std::array<std::string_view, 4> scheme_names{"paper", "liggghts", "yade", "yade_averaged"};
+inline constexpr std::array<std::string_view, 5> scheme_names{"paper", "liggghts", "yade", "liggghts_averaged",
+                                                              "yade_averaged"};
 
 enum class Range { any, positive, non_negative, share };
 
@@ -159,7 +160,10 @@ void root(Visitor& v, Case& c) {
   });
   const EngineSettings conventional{c.time.step / 2};  // below the packed-bed limit where the paper scheme is, too
   v.optional_map("engines", c.engines,
-                 {{"liggghts", conventional}, {"yade", conventional}, {"yade-averaged", {c.time.step}}},
+                 {{"liggghts", conventional},
+                  {"yade", conventional},
+                  {"liggghts-averaged", {c.time.step}},
+                  {"yade-averaged", {c.time.step}}},
                  [&](EngineSettings& engine) { v.number("step_s", engine.step, Range::positive); });
   const auto recipe = [&] {
     const auto& diameters = c.particles.diameters;

@@ -25,7 +25,10 @@ std::unique_ptr<Stepper> make_stepper(const Case& setup, World& world) {
     return std::make_unique<PaperStepper<MixedScheme>>(MixedScheme{{choice.readings}, {choice.readings.integrator}},
                                                        choice.readings, world);
   }
-  if (choice.name == "liggghts") return std::make_unique<ConventionalStepper<LiggghtsScheme>>(setup, world);
+  if (choice.name == "liggghts")
+    return std::make_unique<ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>(setup, world);
+  if (choice.name == "liggghts_averaged")
+    return std::make_unique<ConventionalStepper<LiggghtsScheme<LiggghtsSetVelocities>>>(setup, world);
   if (choice.name == "yade") return std::make_unique<ConventionalStepper<YadeScheme<YadeLeapFrog>>>(setup, world);
   if (choice.name == "yade_averaged")
     return std::make_unique<ConventionalStepper<YadeScheme<YadeMemoryForce>>>(setup, world);

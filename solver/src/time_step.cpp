@@ -28,7 +28,7 @@ std::vector<std::string> warnings(const Case& resolved) {
   const Readings& readings = resolved.scheme.readings;
   const std::string& name = resolved.scheme.name;
   const bool averaged =
-      name == "yade_averaged" || (name == "paper" && readings.integrator == Integration::averaged_displacement);
+      name.ends_with("_averaged") || (name == "paper" && readings.integrator == Integration::averaged_displacement);
   const bool filtered = averaged && readings.dashpot_velocity == DashpotVelocity::averaged_displacement;
   const double gain = filtered ? averaged_displacement_gain : conventional_gain;
   const char* scheme = filtered   ? "the averaged displacement"
@@ -38,7 +38,7 @@ std::vector<std::string> warnings(const Case& resolved) {
   compare("time.step_s", resolved.time.step, gain, scheme);
   if (resolved.packing.step != resolved.time.step) compare("packing.step_s", resolved.packing.step, gain, scheme);
   for (const auto& [engine, settings] : resolved.engines) {
-    const bool is_averaged = engine == "yade-averaged";
+    const bool is_averaged = engine.ends_with("-averaged");
     if (is_averaged && filtered && settings.step == resolved.time.step) continue;  // said above
     compare("engines." + engine + ".step_s", settings.step,
             is_averaged ? averaged_displacement_gain : conventional_gain,

@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"/check", json::object(), "check: must be a list of tables ([[check]]), is {}"},
         Fault{"/scheme",
               {{"name", "leapfrog"}},
-              "scheme.name: must be one of paper, liggghts, yade, yade_averaged, is \"leapfrog\""},
+              "scheme.name: must be one of paper, liggghts, yade, liggghts_averaged, yade_averaged, is \"leapfrog\""},
         Fault{"/scheme",
               {{"lost_contact", "keep"}},
               "scheme.lost_contact: must be one of forget, keep_zero, keep_negative, is \"keep\""},

@@ -13,7 +13,7 @@ hash_results() {
   local results=$work_dir/$1
   mkdir -p "$results"
   "$2" pack "$small_bed" --seed 1 --output "$results/packing"
-  for scheme in paper liggghts yade yade_averaged; do
+  for scheme in paper liggghts yade liggghts_averaged yade_averaged; do
     sed "s/\"schema_version\": 1/&, \"scheme\": {\"name\": \"$scheme\"}/" "$small_bed" |
       "$2" run - --packing "$results/packing/packing.csv" --output "$results/$scheme"
   done

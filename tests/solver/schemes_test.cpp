@@ -40,11 +40,13 @@ TEST(Schemes, VelocityVerletFallsAlongTheParabola) {
   }
 }
 
-TEST(Schemes, YadesMemoryForceIsTheAveragedDisplacementOfEqs19To21) {
-  const auto [velocity, way] = fallen(by_scheme("yade_averaged"), 100);
+TEST(Schemes, SetVelocitiesAndAMemoryForceAreTheAveragedDisplacementOfEqs19To21) {
   const auto [paper_velocity, paper_way] = fallen(small_case(), 100);
-  EXPECT_NEAR(velocity, paper_velocity, 1e-12);
-  EXPECT_NEAR(way, paper_way, 1e-15);
+  for (const char* name : {"liggghts_averaged", "yade_averaged"}) {
+    const auto [velocity, way] = fallen(by_scheme(name), 100);
+    EXPECT_NEAR(velocity, paper_velocity, 1e-12) << name;
+    EXPECT_NEAR(way, paper_way, 1e-15) << name;
+  }
 }
 
 /// Force on one disc in the step that follows its start, from its change of velocity.
@@ -102,7 +104,7 @@ TEST(Schemes, ASphereTurnsByTwoFifthsOfTheInertia) {
 }
 
 TEST(Schemes, EveryOneAccountsForItsMomentum) {
-  for (const char* name : {"paper", "liggghts", "yade", "yade_averaged"}) {
+  for (const char* name : {"paper", "liggghts", "yade", "liggghts_averaged", "yade_averaged"}) {
     Simulation s(by_scheme(name), small_disc({0.0021, 0.0021}, {-0.3, -0.4}, 5.0), 0.02);
     s.start_bar();
     s.advance(2000);

@@ -113,7 +113,7 @@ struct Readings {
 };
 
 struct SchemeChoice {
-  std::string name;   // paper; or liggghts, yade, yade_averaged: what these codes do, step by step
+  std::string name;   // paper; or liggghts, yade, liggghts_averaged, yade_averaged: what these codes do, step by step
   Readings readings;  // of the scheme "paper"; the others have their own
 };
 

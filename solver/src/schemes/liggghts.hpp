@@ -14,6 +14,51 @@
 
 namespace crossdem {
 
+/// Velocity Verlet as it stands.
+class LiggghtsVerlet {
+ public:
+  static constexpr double first_share = 0.5;  // of a step, in which the loads before it act
+  explicit LiggghtsVerlet(const Particles&) {}
+  static void begin(Particles&) {}
+  static void end(World&) {}
+};
+
+/// The paper's averaged displacement inside LIGGGHTS, by velocities that are set between steps: with w the velocity by
+/// which a step has moved, taken back from that of its end, v = (3 w_t - w_(t-1)) / 2 makes the next half kick give
+/// Eqs. (16)-(21). The paper's velocity is 2 w_t - w_(t-1).
+class LiggghtsSetVelocities {
+ public:
+  static constexpr double first_share = 1.0;
+  explicit LiggghtsSetVelocities(const Particles& p)
+      : set_(p.velocity), set_spin_(p.spin), rate_before_(p.velocity), turning_before_(p.spin) {}
+
+  void begin(Particles& p) const {
+    p.velocity = set_;
+    p.spin = set_spin_;
+  }
+
+  void end(World& w) {
+    Particles& p = w.particles;
+    for (std::size_t i = 0; i < p.count(); ++i) {
+      const Vector2 rate = p.velocity[i] - 0.5 * w.dt * w.loads[i].force / p.mass[i];
+      const double turning = p.spin[i] - w.dt * w.loads[i].moment / (p.radius[i] * p.radius[i] * p.mass[i]);
+      set_[i] = 1.5 * rate - 0.5 * rate_before_[i];
+      set_spin_[i] = 1.5 * turning - 0.5 * turning_before_[i];
+      p.velocity[i] = 2 * rate - rate_before_[i];
+      p.spin[i] = 2 * turning - turning_before_[i];
+      rate_before_[i] = rate;
+      turning_before_[i] = turning;
+    }
+  }
+
+ private:
+  std::vector<Vector2> set_;            // [m/s], between this step and the next
+  std::vector<double> set_spin_;        // [rad/s]
+  std::vector<Vector2> rate_before_;    // [m/s], w_(t-1)
+  std::vector<double> turning_before_;  // [rad/s]
+};
+
+template <class Motion>
 class LiggghtsScheme {
  public:
   struct PairMemory {
@@ -26,7 +71,7 @@ class LiggghtsScheme {
   static constexpr bool first_evaluation_advances = false;
 
   LiggghtsScheme(const Case& setup, World& world)
-      : limit_force_(setup.scheme.readings.attraction == Attraction::clipped) {
+      : motion_(world.particles), limit_force_(setup.scheme.readings.attraction == Attraction::clipped) {
     Particles& p = world.particles;
     const double density = setup.particles.density * setup.container.thickness;  // [kg/m^2], src/atom_vec_sphere.cpp
     for (std::size_t i = 0; i < p.count(); ++i) {
@@ -43,7 +88,8 @@ class LiggghtsScheme {
 
   /// Half a kick, the drift, the bar.
   void move(World& w) {
-    w.enter_impulses(0.5 * w.dt, 0.5);
+    motion_.begin(w.particles);
+    w.enter_impulses(Motion::first_share * w.dt, Motion::first_share);
     half_kick(w);
     Particles& p = w.particles;
     for (std::size_t i = 0; i < p.count(); ++i) {
@@ -59,9 +105,10 @@ class LiggghtsScheme {
     list_as_liggghts(p);
   }
 
-  static void finish(World& w) {
+  void finish(World& w) {
     half_kick(w);
-    w.enter_impulses(0.5 * w.dt, 0.5);
+    w.enter_impulses((1.0 - Motion::first_share) * w.dt, 1.0 - Motion::first_share);
+    motion_.end(w);
   }
 
   void begin_evaluation() { spring_energy_ = 0.0; }
@@ -208,7 +255,7 @@ class LiggghtsScheme {
       listed_at_ = p.position;
       bar_->measure();
     }
-    bar_has_moved_far_ = bar_->travel() * bar_->travel() > trigger_squared_;
+    bar_has_moved_far_ = bar_->has_moved(trigger_squared_);
   }
 
   static void half_kick(World& w) {
@@ -221,6 +268,7 @@ class LiggghtsScheme {
     }
   }
 
+  Motion motion_;
   bool limit_force_;
   std::optional<MeshBar> bar_;
   double bar_velocity_ = 0.0;  // [m/s], as the wall's contacts see it
@@ -230,6 +278,7 @@ class LiggghtsScheme {
   double spring_energy_ = 0.0;
 };
 
-static_assert(ConventionalScheme<LiggghtsScheme>);
+static_assert(ConventionalScheme<LiggghtsScheme<LiggghtsVerlet>> &&
+              ConventionalScheme<LiggghtsScheme<LiggghtsSetVelocities>>);
 
 }  // namespace crossdem

@@ -48,6 +48,15 @@ class MeshTriangle {
     }
     normal_ = edge_[0].cross(edge_[1]);
     scale_to_one(normal_);
+    measured_at_ = node_;
+  }
+
+  /// Whether a node has moved by more than the root of `limit_squared` [m^2] since then. Each node is asked, as
+  /// LIGGGHTS does: a bar whose steps divide the limit crosses it at one node a step before it does at another.
+  [[nodiscard]] bool has_moved(double limit_squared) const {
+    for (std::size_t k = 0; k < node_.size(); ++k)
+      if (const Vector3 moved = node_[k] - measured_at_[k]; dot_in_order(moved, moved) > limit_squared) return true;
+    return false;
   }
 
   void translate(double dy) {
@@ -105,6 +114,7 @@ class MeshTriangle {
   }
 
   std::array<Vector3, 3> node_;
+  std::array<Vector3, 3> measured_at_;
   std::array<Vector3, 3> edge_;  // unit vectors, from node k to node k + 1
   std::array<double, 3> length_{};
   Vector3 normal_;
@@ -131,15 +141,15 @@ class MeshBar {
 
   void translate(double dy) {
     for (MeshTriangle& triangle : triangles_) triangle.translate(dy);
-    travel_ += dy;
   }
 
-  /// [m], since the triangles were measured.
-  [[nodiscard]] double travel() const { return travel_; }
+  [[nodiscard]] bool has_moved(double limit_squared) const {
+    return std::any_of(triangles_.begin(), triangles_.end(),
+                       [&](const MeshTriangle& triangle) { return triangle.has_moved(limit_squared); });
+  }
 
   void measure() {
     for (MeshTriangle& triangle : triangles_) triangle.measure();
-    travel_ = 0.0;
   }
 
   /// Calls `act(face, contact)` for each face that the disc at `centre` is opposite of, or whose own edge it is.
@@ -169,7 +179,6 @@ class MeshBar {
   }
 
   std::vector<MeshTriangle> triangles_;
-  double travel_ = 0.0;
 };
 
 }  // namespace crossdem
