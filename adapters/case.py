@@ -1,5 +1,6 @@
 """The Python front of a case: TOML text in, the solver's resolved case out. It knows no key of the schema."""
 
+import copy
 import hashlib
 import json
 from collections.abc import Callable, Sequence
@@ -67,13 +68,7 @@ def load_case(
         raw = read_toml(Path(path))
     except TextError as error:
         raise CaseError([str(error)]) from error
-    faults = []
-    for override in overrides:
-        try:
-            apply_override(raw, override)
-        except OverrideError as error:
-            faults.append(f"--set {override}: {error}")
-    if faults:
+    if faults := _apply(raw, overrides):
         raise CaseError(faults)
     further = [f"{path}: {fault}" for fault in further_faults(raw)]
     try:
@@ -83,6 +78,27 @@ def load_case(
     if further:
         raise CaseError(further)
     return case
+
+
+def varied(case: Case, overrides: Sequence[str]) -> Case:
+    """`case` with `key.path=value` overrides, validated anew. Every other value stays as it is, also where it had been
+    filled in from one that now changes. Raises CaseError, SolverError.
+    """
+    values = copy.deepcopy(case.resolved)
+    if faults := _apply(values, overrides):
+        raise CaseError(faults)
+    return _resolve(values, case.file_name)
+
+
+def _apply(tables: dict, overrides: Sequence[str]) -> list[str]:
+    """Sets each value in place; a fault line for each that cannot be."""
+    faults = []
+    for override in overrides:
+        try:
+            apply_override(tables, override)
+        except OverrideError as error:
+            faults.append(f"--set {override}: {error}")
+    return faults
 
 
 def _resolve(raw: dict, file_name: str) -> Case:

@@ -12,12 +12,13 @@ from .motion_file import Motion
 SCHEMA_VERSION = 1
 
 RESISTANCE_COLUMNS = (
-    "time_s",  # 0 when the bar starts
-    "depth_m",  # travel of the bar since then
+    "time_s",  # 0 at the end of the rest, when the bar starts
+    "depth_m",  # travel of the bar since then; 0 without a bar, as are the four forces that follow
     "force_x_N",  # of the particles on the bar, at that step
     "force_y_N",  # as above; > 0 is upwards, the penetration resistance
     "tip_force_y_N",  # share of force_y_N on the bottom face and its corners
     "shaft_force_y_N",  # share on the sides
+    "floor_force_y_N",  # of the particles on the floor, at that step; < 0 is downwards
     "contacts",  # pairs of particles that overlap, without walls and bar
     "kinetic_energy_J",  # of all particles, rotation (I = m r^2 / 2) included
 )
@@ -62,6 +63,11 @@ def sample_times_s(case: dict) -> np.ndarray:
 def frame_times_s(case: dict) -> np.ndarray:
     """The times [s] of the frames of motion that `case` asks for."""
     return _times_s(case, "frame_interval_s")
+
+
+def bar_speed_m_s(case: dict) -> float:
+    """[m/s] downwards; 0 without a bar."""
+    return case["bar"]["speed_m_s"] if "bar" in case else 0.0
 
 
 def faults(
@@ -122,6 +128,8 @@ def _shape_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]
         "angle_rad": (frames, particles),
         "bar_tip_m": (frames,),
     }
+    if ("bar" in case) != (motion.bar_tip_m is not None):
+        yield "the case has a bar, the motion none" if "bar" in case else "the motion has a bar, the case none"
     for name, shape in shapes.items():
         values = getattr(motion, name)
         if values is not None and np.shape(values) != shape:
@@ -144,7 +152,7 @@ def _finite_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str
 
 
 def _value_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]:
-    speed_m_s = case["bar"]["speed_m_s"]
+    speed_m_s = bar_speed_m_s(case)
     if not np.allclose(resistance["time_s"], sample_times_s(case), rtol=0, atol=TIME_TOLERANCE_S):
         yield "the samples are not at the times that the case asks for"
     if not np.allclose(motion.time_s, frame_times_s(case), rtol=0, atol=TIME_TOLERANCE_S):
@@ -153,11 +161,9 @@ def _value_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]
         resistance["depth_m"], speed_m_s * resistance["time_s"], rtol=0, atol=LENGTH_TOLERANCE_M
     ):
         yield "depth_m is not the bar's speed times time_s"
-    if not np.allclose(
-        motion.bar_tip_m,
-        motion.bar_tip_m[0] - speed_m_s * motion.time_s,
-        rtol=0,
-        atol=LENGTH_TOLERANCE_M,
+    tip_m = motion.bar_tip_m
+    if tip_m is not None and not np.allclose(
+        tip_m, tip_m[0] - speed_m_s * motion.time_s, rtol=0, atol=LENGTH_TOLERANCE_M
     ):
         yield "bar_tip_m does not move with the bar's speed"
 
@@ -186,11 +192,12 @@ def lost_particles(case: dict, motion: Motion) -> dict[str, np.ndarray]:
     """
     x_m, y_m = motion.position_m[..., 0], motion.position_m[..., 1]
     outside = (x_m < 0) | (x_m > case["container"]["width_m"]) | (y_m < 0)
-    bar = case["bar"]
-    tip_m = motion.bar_tip_m[:, np.newaxis]
-    in_bar = (
-        (np.abs(x_m - bar["centre_x_m"]) < bar["width_m"] / 2)
-        & (y_m > tip_m)
-        & (y_m < tip_m + bar["length_m"])
-    )
-    return {"outside the container": outside, "inside the bar": in_bar}
+    found = {"outside the container": outside}
+    if "bar" in case:
+        bar, tip_m = case["bar"], motion.bar_tip_m[:, np.newaxis]
+        found["inside the bar"] = (
+            (np.abs(x_m - bar["centre_x_m"]) < bar["width_m"] / 2)
+            & (y_m > tip_m)
+            & (y_m < tip_m + bar["length_m"])
+        )
+    return found

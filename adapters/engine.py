@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import shutil
 from abc import ABC, abstractmethod
 from pathlib import Path
@@ -31,9 +32,11 @@ class Engine(ABC):
     script: Path | None = (
         None  # real file that the engine runs; a copy goes into every run's inputs/
     )
+    sources: str | None = None  # how the names of its files here start, where not with `name`
     program: str  # the word of `command` that `executable` stands for, as people would type it
     samples_file: str  # grows by one line per sample: shows the progress
     kept_output: tuple[str, ...] = ()  # files of output/ worth keeping beside the dataset
+    log_noise: re.Pattern[bytes] | None = None  # of its log, not kept of a run that ended well
     by_hand: str = (
         ""  # a sentence for README.txt: what the command needs that is not there of itself
     )
@@ -57,7 +60,7 @@ class Engine(ABC):
 
     @abstractmethod
     def lines_before_bar(self, case: Case) -> int:
-        """Lines of `samples_file` before that of the start of the bar."""
+        """Lines of `samples_file` before that of the end of the rest, when the bar starts."""
 
     @abstractmethod
     def read_output(self, case: Case, packing: Packing, run_dir: Path, manifest: dict) -> Dataset:
@@ -86,7 +89,7 @@ class Engine(ABC):
     def digest(self) -> str:
         """SHA-256 [hex] of what the run's result depends on beside case, packing and version: its files here."""
         content = hashlib.sha256()
-        for source in sorted(Path(__file__).parent.glob(f"{self.name}*.*")):
+        for source in sorted(Path(__file__).parent.glob(f"{self.sources or self.name}*.*")):
             content.update(source.read_bytes())
         return content.hexdigest()
 
@@ -103,3 +106,8 @@ class Engine(ABC):
 
     def _copy_script(self, run_dir: Path) -> None:
         shutil.copyfile(self.script, run_dir / INPUTS / self.script.name)
+
+
+def has_bar_without_corners(case: Case) -> bool:
+    """Whether the case takes the reading of a bar that acts by its faces alone."""
+    return "bar" in case.resolved and case.resolved["scheme"]["bar_corner"] == "faces_only"

@@ -1,11 +1,15 @@
 """The engines by name, in the order in which people read of them."""
 
 from .engine import Engine
-from .liggghts import Liggghts
+from .liggghts import Liggghts, LiggghtsAveraged
 from .native import Native
-from .yade import Yade
+from .yade import Yade, YadeAveraged
 
-ENGINES: dict[str, Engine] = {engine.name: engine for engine in (Native(), Liggghts(), Yade())}
+ENGINES: dict[str, Engine] = {
+    engine.name: engine
+    for engine in (Native(), Liggghts(), Yade(), LiggghtsAveraged(), YadeAveraged())
+}
+DEFAULT_ENGINES = ("native", "liggghts", "yade")  # those that a command takes unless it is told
 
 
 def unknown_engines(case: dict) -> list[str]:

@@ -16,12 +16,22 @@ import pandas as pd
 from .case import Case
 from .dataset import Dataset, Motion
 from .dataset_faults import FORCE_ROUNDING, FORCE_TOLERANCE_N
-from .engine import INPUTS, OUTPUT, Engine, EngineFailure, EngineNotFound
+from .engine import (
+    INPUTS,
+    OUTPUT,
+    Engine,
+    EngineFailure,
+    EngineNotFound,
+    has_bar_without_corners,
+)
 from .liggghts_input import bar, numbering, numbers, particles
 from .packing import Packing
 from .sample_table import SAMPLE_COLUMNS, frame_times, resistance_table, whole_lines
 from .schedule import Schedule
 
+# What the deck includes, by whether the case has a bar and by whether displacements are averaged.
+BAR_DECKS = [Path(__file__).with_name(f"liggghts_bars_{bars}.in") for bars in (0, 1)]
+INTEGRATOR_DECKS = [Path(__file__).with_name(f"liggghts_averaged_{number}.in") for number in (0, 1)]
 SAMPLES = f"{OUTPUT}/samples.txt"
 FRAMES = f"{OUTPUT}/frames.txt"
 FRAME_COLUMNS = ("id", "x_m", "y_m", "vx_m_s", "vy_m_s", "omega_rad_s")
@@ -37,10 +47,13 @@ ERROR_LINE = re.compile(r"^ERROR[^:]*: (.+?)(?: \([\w./]+:\d+\))?$", re.MULTILIN
 
 class Liggghts(Engine):
     name = "liggghts"
+    sources = "liggghts"
+    averaged = False  # whether it moves by the paper's averaged displacement
     program = "liggghts"
     script = Path(__file__).with_name("liggghts_case.in")
     samples_file = SAMPLES
     cost_s = 1.2e-7
+    integrator = "integrates by velocity Verlet, not by the averaged displacement of Eqs (19)-(24)"
 
     def executable(self) -> str:
         found = shutil.which("liggghts")
@@ -55,21 +68,16 @@ class Liggghts(Engine):
         return super().environment() | NO_MPI_DAEMON
 
     def unsupported(self, case: Case) -> list[str]:
-        found = []
-        if case.resolved["time"]["rest_s"] == 0:
-            found.append(
-                "without a rest (time.rest_s = 0) it takes no sample at the start of the bar"
-            )
-        if case.resolved["scheme"]["bar_corner"] == "faces_only":
-            found.append(
+        if has_bar_without_corners(case):
+            return [
                 "its bar always has corners; scheme.bar_corner = faces_only cannot be expressed"
-            )
-        return found
+            ]
+        return []
 
     def limitations(self, case: Case) -> list[str]:
         scheme = case.resolved["scheme"]
         found = [
-            "integrates by velocity Verlet, not by the averaged displacement of Eqs (19)-(24)",
+            self.integrator,
             "caps the shear spring by the absolute total normal force, not by the normal spring force of Eq (9)",
             "takes torque arms and slip velocity at r - overlap / 2, not at the full radius of Eqs (2) and (12)",
             "counts a first contact's shear displacement in full, without the share of Eq (4)",
@@ -96,17 +104,22 @@ class Liggghts(Engine):
     def lines_before_bar(self, case: Case) -> int:
         schedule = self.schedule(case)
         first_step, start_step = numbering(schedule)
-        # A title, and the samples of the rest less its last, which is that of the bar's start.
-        return start_step // schedule.sample - first_step // schedule.sample
+        # A title, the sample of the packing, and those of the rest less its last, which is that of the bar's start.
+        return 1 + start_step // schedule.sample - first_step // schedule.sample
 
     def write_input(self, case: Case, packing: Packing, run_dir: Path) -> None:
         inputs = run_dir / INPUTS
         self._copy_script(run_dir)
-        (inputs / "numbers.in").write_text(
-            numbers(case.resolved, self.schedule(case), packing), encoding="ascii"
-        )
-        (inputs / "particles.data").write_text(particles(case.resolved, packing), encoding="ascii")
-        (inputs / "bar.stl").write_text(bar(case.resolved, packing), encoding="ascii")
+        texts = {
+            "numbers.in": numbers(case.resolved, self.schedule(case), packing, self.averaged),
+            "particles.data": particles(case.resolved, packing),
+        }
+        if "bar" in case.resolved:
+            texts["bar.stl"] = bar(case.resolved, packing)
+        for name, text in texts.items():
+            (inputs / name).write_text(text, encoding="ascii")
+        for included in (BAR_DECKS["bar" in case.resolved], INTEGRATOR_DECKS[self.averaged]):
+            shutil.copyfile(included, inputs / included.name)
 
     def read_output(self, case: Case, packing: Packing, run_dir: Path, manifest: dict) -> Dataset:
         schedule = self.schedule(case)
@@ -114,6 +127,22 @@ class Liggghts(Engine):
         resistance = _read_samples(run_dir / SAMPLES, case.resolved, schedule)
         motion = _read_frames(run_dir / FRAMES, case.resolved, schedule, packing)
         return Dataset(case.resolved, manifest, radius_m, motion, resistance)
+
+
+class LiggghtsAveraged(Liggghts):
+    """LIGGGHTS with the paper's averaged displacement, by velocities set anew after every step."""
+
+    name = "liggghts-averaged"
+    averaged = True
+    cost_s = 8e-7
+    log_noise = re.compile(  # every step is a run of its own, after which velocities are set
+        rb"^(Setting atom values \.\.\.| +\d+ settings made for \w+| +Step .*| +\d+( +[-+.e\d]+){7} *|Loop time .*|)\n",
+        re.MULTILINE,
+    )
+    integrator = (
+        "integrates by velocity Verlet from velocities that are set after every step such that it moves by the "
+        "averaged displacement of Eqs (19)-(24)"
+    )
 
 
 @lru_cache
@@ -158,8 +187,12 @@ def _read_samples(path: Path, case: dict, schedule: Schedule) -> pd.DataFrame:
     return table
 
 
+def _bar_tip_m(case: dict, packing: Packing, time_s: np.ndarray) -> np.ndarray | None:
+    return packing.bar_tip_m - case["bar"]["speed_m_s"] * time_s if "bar" in case else None
+
+
 def _read_frames(path: Path, case: dict, schedule: Schedule, packing: Packing) -> Motion:
-    """The motion from a text dump whose frames all have the same particles, sorted by id."""
+    """The motion after the rest, from a text dump whose frames all have the same particles, sorted by id."""
     count = len(packing.particles)
     try:
         text = whole_lines(path).splitlines()
@@ -181,9 +214,10 @@ def _read_frames(path: Path, case: dict, schedule: Schedule, packing: Packing) -
             whole = False
         if not whole:
             break
-        steps.append(int(lines[1]))
-        frames.append(frame)
-    time_s = frame_times(np.array(steps, dtype=int) - start_step, case, schedule, "liggghts")
+        if int(lines[1]) >= start_step:
+            steps.append(int(lines[1]) - start_step)
+            frames.append(frame)
+    time_s = frame_times(np.array(steps, dtype=int), case, schedule, "liggghts")
     values = np.stack(frames)
     if not np.isfinite(values).all():
         raise EngineFailure("liggghts wrote positions or velocities that are not finite")
@@ -197,5 +231,5 @@ def _read_frames(path: Path, case: dict, schedule: Schedule, packing: Packing) -
         velocity_m_s=values[:, :, 3:5],
         angular_velocity_rad_s=values[:, :, 5],
         angle_rad=None,
-        bar_tip_m=packing.bar_tip_m - case["bar"]["speed_m_s"] * time_s,
+        bar_tip_m=_bar_tip_m(case, packing, time_s),
     )

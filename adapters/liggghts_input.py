@@ -7,6 +7,8 @@ import math
 from .packing import Packing
 from .schedule import Schedule
 
+MOST_IN_ONE_BIN = 5000  # discs: finding neighbours among all of them takes their number squared
+
 
 def number(value: float | int | str) -> str:
     """The only text that may reach a deck: a finite number with all its digits, or one of the words on and off."""
@@ -18,7 +20,7 @@ def number(value: float | int | str) -> str:
 
 
 def numbering(schedule: Schedule) -> tuple[int, int]:
-    """The numbers of the first step and of the one at which the bar starts.
+    """The numbers of the first step and of the one at which the rest ends and the bar starts.
 
     The latter is a multiple of both intervals, as LIGGGHTS writes samples and frames at multiples.
     """
@@ -27,13 +29,12 @@ def numbering(schedule: Schedule) -> tuple[int, int]:
     return start_step - schedule.rest, start_step
 
 
-def numbers(case: dict, schedule: Schedule, packing: Packing) -> str:
+def numbers(case: dict, schedule: Schedule, packing: Packing, averaged: bool) -> str:
     """The numbers of the case as variables of the deck; SI units, names as the deck uses them."""
     first_step, start_step = numbering(schedule)
     found: dict[str, float | int | str] = {
         "step_s": schedule.step_s,
-        "rest_steps": schedule.rest,
-        "penetration_steps": schedule.penetration,
+        "steps": schedule.steps,
         "sample_steps": schedule.sample,
         "frame_steps": schedule.frame,
         "first_step": first_step,
@@ -41,10 +42,13 @@ def numbers(case: dict, schedule: Schedule, packing: Packing) -> str:
         "gravity": case["gravity_m_s2"],
         "width_m": case["container"]["width_m"],
         "skin_m": 0.5 * float(packing.particles["radius_m"].min()),
-        "speed": case["bar"]["speed_m_s"],
-        "bar_tip_m": packing.bar_tip_m,
+        "bin_m": _bin_m(case, packing),
+        "bars": int("bar" in case),
+        "averaged": int(averaged),
         "limit_force": "on" if case["scheme"]["attraction"] == "clipped" else "off",
     }
+    if "bar" in case:
+        found |= {"speed": case["bar"]["speed_m_s"], "bar_tip_m": packing.bar_tip_m}
     for suffix, pair in (("particle", "particle_particle"), ("wall", "particle_wall")):
         contact = case["contact"][pair]
         found[f"kn_{suffix}"] = contact["normal_stiffness_N_m"]
@@ -56,11 +60,10 @@ def numbers(case: dict, schedule: Schedule, packing: Packing) -> str:
 
 
 def particles(case: dict, packing: Packing) -> str:
-    """The discs as LIGGGHTS data, in a domain that holds container and bar with room above."""
-    width_m, height_m = case["container"]["width_m"], case["container"]["height_m"]
-    top_m = packing.bar_tip_m + case["bar"]["length_m"] + height_m
+    """The discs as LIGGGHTS data, in a domain that holds container, bed and bar with room above."""
+    width_m, top_m = case["container"]["width_m"], _top_m(case, packing)
     margin_m = 0.1 * width_m
-    density_kg_m2 = case["particles"]["density_kg_m3"] * case["container"]["thickness_m"]
+    density = number(case["particles"]["density_kg_m3"] * case["container"]["thickness_m"])
     head = [
         "discs of the packing",
         "",
@@ -73,14 +76,28 @@ def particles(case: dict, packing: Packing) -> str:
         "Atoms",
         "",
     ]
-    rows = packing.particles.itertuples()
-    density = number(density_kg_m2)
-    atoms = [
-        f"{row.id + 1} 1 {number(2 * row.radius_m)} {density} {number(row.x_m)} {number(row.y_m)} 0"
-        for row in rows
-    ]
-    velocities = [f"{i + 1} 0 0 0 0 0 0" for i in range(len(packing.particles))]
+    atoms, velocities = [], []
+    for row in packing.particles.itertuples():
+        place = f"{number(row.x_m)} {number(row.y_m)} 0"
+        atoms.append(f"{row.id + 1} 1 {number(2 * row.radius_m)} {density} {place}")
+        velocity = f"{number(row.velocity_x_m_s)} {number(row.velocity_y_m_s)} 0"
+        velocities.append(f"{row.id + 1} {velocity} 0 0 {number(row.angular_velocity_rad_s)}")
     return "\n".join([*head, *atoms, "", "Velocities", "", *velocities, ""])
+
+
+def _top_m(case: dict, packing: Packing) -> float:
+    """Upper end of the domain: a container's height above all that is there at the start."""
+    highest_m = float((packing.particles["y_m"] + packing.particles["radius_m"]).max())
+    if "bar" in case:
+        highest_m = max(highest_m, packing.bar_tip_m + case["bar"]["length_m"])
+    return highest_m + case["container"]["height_m"]
+
+
+def _bin_m(case: dict, packing: Packing) -> float:
+    """Bins for few discs hold them all, which makes the order of every sum known; 0 stands for LIGGGHTS' own choice."""
+    if len(packing.particles) > MOST_IN_ONE_BIN:
+        return 0.0
+    return 2 * max(case["container"]["width_m"], _top_m(case, packing))
 
 
 def _half_depth_m(packing: Packing) -> float:

@@ -15,14 +15,14 @@ class MotionFileError(Exception):
 
 @dataclass(frozen=True)
 class Motion:
-    """F frames of N particles, in the order of their ids; t = 0 is when the bar starts."""
+    """F frames of N particles, in the order of their ids; t = 0 is the end of the rest, when the bar starts."""
 
     time_s: np.ndarray  # (F,)
     position_m: np.ndarray  # (F, N, 2) centres
     velocity_m_s: np.ndarray  # (F, N, 2)
     angular_velocity_rad_s: np.ndarray  # (F, N), counter-clockwise > 0
     angle_rad: np.ndarray | None  # (F, N), counter-clockwise > 0, 0 at the packing; None: the engine keeps no angle
-    bar_tip_m: np.ndarray  # (F,) height of the bar's bottom face
+    bar_tip_m: np.ndarray | None  # (F,) height of the bar's bottom face; None: there is no bar
 
 
 def write_motion(
@@ -60,7 +60,9 @@ def write_motion(
         _write_element(soil, "angular_velocity", motion.angular_velocity_rad_s, "rad s-1", position)
         if motion.angle_rad is not None:
             _write_element(soil, "angle", motion.angle_rad, "rad", position)
-        _write_element(file.create_group("observables/bar"), "tip", motion.bar_tip_m, "m", position)
+        if motion.bar_tip_m is not None:
+            bar = file.create_group("observables/bar")
+            _write_element(bar, "tip", motion.bar_tip_m, "m", position)
 
 
 def read_motion(path: Path) -> tuple[Motion, np.ndarray]:
@@ -77,7 +79,9 @@ def read_motion(path: Path) -> tuple[Motion, np.ndarray]:
                 velocity_m_s=soil["velocity/value"][()],
                 angular_velocity_rad_s=soil["angular_velocity/value"][()],
                 angle_rad=soil["angle/value"][()] if "angle" in soil else None,
-                bar_tip_m=file["observables/bar/tip/value"][()],
+                bar_tip_m=file["observables/bar/tip/value"][()]
+                if "observables/bar" in file
+                else None,
             )
             return motion, soil["radius"][()]
     except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:

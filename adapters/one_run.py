@@ -9,7 +9,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from .dataset import Dataset, DatasetError
-from .dataset_faults import SCHEMA_VERSION
+from .dataset_faults import SCHEMA_VERSION, bar_speed_m_s
 from .engine import OUTPUT, Engine, EngineFailure
 from .process import Ending, LineCounter, Process
 from .run_folder import RunRequest, prepare, run_name
@@ -95,6 +95,9 @@ class Run:
         for name in self.engine.kept_output:
             if (self.work_dir / OUTPUT / name).exists():
                 shutil.copyfile(self.work_dir / OUTPUT / name, self.work_dir / name)
+        if self.engine.log_noise:
+            log = self.work_dir / LOG
+            log.write_bytes(self.engine.log_noise.sub(b"", log.read_bytes()))
         shutil.rmtree(self.folder, ignore_errors=True)  # whatever is there could not be reused
         dataset.write(self.folder, extra_files_from=self.work_dir, without=OUTPUT)
         self.discard()
@@ -139,7 +142,9 @@ class Run:
         if samples <= 0:
             return "while resting"
         moved_s = (samples - 1) * self.case.resolved["time"]["sample_interval_s"]
-        depth_cm = 100 * self.case.resolved["bar"]["speed_m_s"] * moved_s
+        if "bar" not in self.case.resolved:
+            return f"after {moved_s:.3g} s"
+        depth_cm = 100 * bar_speed_m_s(self.case.resolved) * moved_s
         return f"with the bar at a depth of {depth_cm:.3g} cm"
 
     def _manifest(self) -> dict:

@@ -1,4 +1,4 @@
-"""The settled bed every engine starts from: made once per seed by the native solver, then only read."""
+"""The particles that every engine starts from, a settled bed or those of the case: made by the solver, then only read."""
 
 import hashlib
 import json
@@ -13,7 +13,11 @@ import pandas as pd
 from .case import Case, CaseError
 from .solver import call_solver, find_solver, messages
 
-COLUMNS = ("id", "x_m", "y_m", "radius_m")
+COLUMNS = (
+    *("id", "x_m", "y_m", "radius_m"),
+    *("velocity_x_m_s", "velocity_y_m_s"),
+    "angular_velocity_rad_s",  # counter-clockwise > 0
+)
 
 
 class PackingError(Exception):
@@ -22,11 +26,11 @@ class PackingError(Exception):
 
 @dataclass(frozen=True)
 class Packing:
-    """Discs at rest, unrotated, with zero shear springs. `folder` holds packing.csv and packing.json."""
+    """Discs, unrotated, with zero shear springs. `folder` holds packing.csv and packing.json."""
 
     seed: int
-    particles: pd.DataFrame  # id, x_m, y_m, radius_m; ids 0, 1, ...
-    bar_tip_m: float  # height of the bar's bottom face above the floor until the bar starts
+    particles: pd.DataFrame  # COLUMNS; ids 0, 1, ...; a settled bed is at rest
+    bar_tip_m: float | None  # height of the bar's bottom face above the floor until the bar starts; None: no bar
     contacts: int  # pairs of particles
     hash: str  # SHA-256 [hex] of packing.csv
     folder: Path
@@ -43,7 +47,7 @@ class Packing:
             return cls(
                 seed=int(about["seed"]),
                 particles=particles,
-                bar_tip_m=float(about["bar_tip_m"]),
+                bar_tip_m=None if about["bar_tip_m"] is None else float(about["bar_tip_m"]),
                 contacts=int(about["contacts"]),
                 hash=hashlib.sha256(table).hexdigest(),
                 folder=folder,
@@ -53,7 +57,7 @@ class Packing:
 
 
 def make_packing(case: Case, seed: int, folder: Path) -> Packing:
-    """The packing in `folder`, settled there by the solver unless it is there already.
+    """The packing in `folder`, made there by the solver unless it is there already.
 
     It appears whole or not at all. Raises CaseError when the bed cannot be made from this case,
     SolverError when the solver fails.

@@ -65,7 +65,7 @@ class _Queue:
         self._waiting: list[Run] = []
         self._running: list[Run] = []
         self._ended: list[tuple[Run, Dataset]] = []  # until the contacts for their gates are known
-        self._native_contacts: dict[str, int] = {}  # at the end of the rest, by packing
+        self._native_contacts: dict[tuple[str, str], int] = {}  # at the end of the rest, by _bed
         self.results: dict[int, RunResult] = {}
 
     def admit(self, request: RunRequest) -> None:
@@ -133,19 +133,19 @@ class _Queue:
     def _end(self, run: Run, dataset: Dataset) -> None:
         self._ended.append((run, dataset))
         if run.engine.name == REFERENCE:
-            self._native_contacts[run.request.packing.hash] = contacts_at_rest(dataset)
+            self._native_contacts[_bed(run)] = contacts_at_rest(dataset)
 
     def _keep_ended(self) -> None:
         """Finish the runs whose gates need not wait for a native run."""
         unfinished = [*self._waiting, *self._running]
-        awaited = {run.request.packing.hash for run in unfinished if run.engine.name == REFERENCE}
-        ready = [entry for entry in self._ended if entry[0].request.packing.hash not in awaited]
+        awaited = {_bed(run) for run in unfinished if run.engine.name == REFERENCE}
+        ready = [entry for entry in self._ended if _bed(entry[0]) not in awaited]
         for entry in ready:
             self._ended.remove(entry)
             self._keep(*entry)
 
     def _keep(self, run: Run, dataset: Dataset) -> None:
-        native_contacts = self._native_contacts.get(run.request.packing.hash)
+        native_contacts = self._native_contacts.get(_bed(run))
         gated = dataset  # a run that is there keeps the gates it has, where there is nothing to set them by anew
         if run.started or native_contacts is not None:
             gated = with_gates(dataset, native_contacts)
@@ -171,6 +171,11 @@ class _Queue:
         failure: str | None = None,
     ) -> None:
         self.results[id(request)] = RunResult(request, folder, failure, status)
+
+
+def _bed(run: Run) -> tuple[str, str]:
+    """What names the bed that a run loads: variants of a case share their packings, and rest differently."""
+    return run.case.hash, run.request.packing.hash
 
 
 def _finished(run: Run) -> Dataset | None:

@@ -8,14 +8,14 @@ import numpy as np
 import pandas as pd
 
 from .dataset import RESISTANCE_COLUMNS
-from .dataset_faults import frame_times_s, sample_times_s
+from .dataset_faults import bar_speed_m_s, frame_times_s, sample_times_s
 from .engine import EngineFailure
 from .schedule import Schedule
 
 SAMPLE_COLUMNS = (
     "step",
     *RESISTANCE_COLUMNS[2:],
-)  # of an engine's samples; step 0 is the start of the bar
+)  # of an engine's samples; step 0 is the end of the rest
 
 
 def whole_lines(path: Path) -> str:
@@ -38,7 +38,7 @@ def resistance_table(
     if not np.isfinite(table.to_numpy(dtype=float)).all():
         raise EngineFailure(f"{engine} printed values that are not finite")
     table.insert(0, "time_s", sample_times_s(case))
-    table.insert(1, "depth_m", case["bar"]["speed_m_s"] * table["time_s"])
+    table.insert(1, "depth_m", bar_speed_m_s(case) * table["time_s"])
     return table[list(RESISTANCE_COLUMNS)].astype({"contacts": int})
 
 

@@ -1,9 +1,10 @@
-"""YADE: data files for the script yade_case.py, and its output as a Dataset."""
+"""YADE, by itself and with the paper's averaged displacement: the script yade_case.py and its output as a Dataset."""
 
 from __future__ import annotations
 
 import glob
 import re
+import shutil
 import subprocess
 from functools import lru_cache
 from io import StringIO
@@ -14,7 +15,14 @@ import pandas as pd
 
 from .case import Case
 from .dataset import Dataset, Motion
-from .engine import INPUTS, OUTPUT, Engine, EngineFailure, EngineNotFound
+from .engine import (
+    INPUTS,
+    OUTPUT,
+    Engine,
+    EngineFailure,
+    EngineNotFound,
+    has_bar_without_corners,
+)
 from .packing import Packing
 from .sample_table import SAMPLE_COLUMNS, frame_times, resistance_table, whole_lines
 from .schedule import Schedule
@@ -27,10 +35,16 @@ VALUES_PER_PARTICLE = 6  # x, y, vx, vy, angle, angular velocity
 
 class Yade(Engine):
     name = "yade"
+    sources = "yade"
     program = PYTHON
     script = Path(__file__).with_name("yade_case.py")
+    memory_script = Path(__file__).with_name("yade_averaged.py")  # imported by the other
     samples_file = SAMPLES
     cost_s = 4e-7
+    integrator = (
+        "integrates by leap-frog, not by the averaged displacement of Eqs (19)-(24)",
+        "its velocities and its kinetic energy are those of half a time step before their time",
+    )
 
     def executable(self) -> str:
         if not glob.glob("/usr/lib/*/yade-double/py/yade") or not Path(PYTHON).exists():
@@ -43,7 +57,7 @@ class Yade(Engine):
 
     def unsupported(self, case: Case) -> list[str]:
         found = []
-        if case.resolved["scheme"]["bar_corner"] == "faces_only":
+        if has_bar_without_corners(case):
             found.append(
                 "its bar always has corners; scheme.bar_corner = faces_only cannot be expressed"
             )
@@ -59,8 +73,7 @@ class Yade(Engine):
     def limitations(self, case: Case) -> list[str]:
         scheme = case.resolved["scheme"]
         found = [
-            "integrates by leap-frog, not by the averaged displacement of Eqs (19)-(24)",
-            "its velocities and its kinetic energy are those of half a time step before their time",
+            *self.integrator,
             "caps the shear spring by the total normal force, not by the normal spring force of Eq (9)",
             "takes torque arms and slip velocity at r - overlap / 2, at the container's walls at r - overlap, "
             "not at the full radius of Eqs (2) and (12)",
@@ -79,7 +92,7 @@ class Yade(Engine):
         return found
 
     def command(self, case: Case, run_dir: Path) -> list[str]:
-        return [self.program, f"{INPUTS}/{self.script.name}"]
+        return [self.program, f"{INPUTS}/{self.script.name}", self.name]
 
     def lines_before_bar(self, case: Case) -> int:
         schedule = self.schedule(case)
@@ -91,13 +104,27 @@ class Yade(Engine):
 
     def write_input(self, case: Case, packing: Packing, run_dir: Path) -> None:
         self._copy_script(run_dir)  # it reads the case and the packing as they are
+        shutil.copyfile(self.memory_script, run_dir / INPUTS / self.memory_script.name)
 
     def read_output(self, case: Case, packing: Packing, run_dir: Path, manifest: dict) -> Dataset:
         schedule = self.schedule(case)
-        resistance = _read_samples(run_dir / SAMPLES, case.resolved, schedule)
-        motion = _read_frames(run_dir / FRAMES, case.resolved, schedule, len(packing.particles))
+        resistance = _read_samples(run_dir / SAMPLES, case.resolved, schedule, self.name)
+        motion = _read_frames(
+            run_dir / FRAMES, case.resolved, schedule, len(packing.particles), self.name
+        )
         radius_m = packing.particles["radius_m"].to_numpy(dtype=float)
         return Dataset(case.resolved, manifest, radius_m, motion, resistance)
+
+
+class YadeAveraged(Yade):
+    """YADE with the paper's averaged displacement: its own law, and the time step of the paper."""
+
+    name = "yade-averaged"
+    cost_s = 2.5e-6
+    integrator = (
+        "integrates by leap-frog with doubled mass and inertia, halved gravity and a memory force that make it the "
+        "averaged displacement of Eqs (19)-(24)",
+    )
 
 
 @lru_cache
@@ -121,32 +148,32 @@ def _version() -> str:
     return found[0]
 
 
-def _read_samples(path: Path, case: dict, schedule: Schedule) -> pd.DataFrame:
+def _read_samples(path: Path, case: dict, schedule: Schedule, engine: str) -> pd.DataFrame:
     """The table of resistance from the samples at and after the start of the bar."""
     try:
         table = pd.read_csv(StringIO(whole_lines(path)), float_precision="round_trip")[
             list(SAMPLE_COLUMNS)
         ].astype(float)
     except (OSError, ValueError, KeyError) as error:
-        raise EngineFailure(f"yade left no readable {path.name} ({error})") from error
-    return resistance_table(table, case, schedule, "yade")
+        raise EngineFailure(f"{engine} left no readable {path.name} ({error})") from error
+    return resistance_table(table, case, schedule, engine)
 
 
-def _read_frames(path: Path, case: dict, schedule: Schedule, particles: int) -> Motion:
+def _read_frames(path: Path, case: dict, schedule: Schedule, particles: int, engine: str) -> Motion:
     """The motion from the binary file whose layout yade_case.py describes."""
     try:
         values = np.fromfile(path)
     except OSError as error:
-        raise EngineFailure(f"yade left no readable {path.name} ({error.strerror})") from error
+        raise EngineFailure(f"{engine} left no readable {path.name} ({error.strerror})") from error
     per_frame = 2 + VALUES_PER_PARTICLE * particles
     frames = values.size // per_frame  # less a torn one at the end
     values = values[: frames * per_frame].reshape(frames, per_frame)
     discs = values[:, 2:].reshape(frames, particles, VALUES_PER_PARTICLE)
     return Motion(
-        time_s=frame_times(values[:, 0], case, schedule, "yade"),
+        time_s=frame_times(values[:, 0], case, schedule, engine),
         position_m=discs[:, :, 0:2],
         velocity_m_s=discs[:, :, 2:4],
         angular_velocity_rad_s=discs[:, :, 5],
         angle_rad=discs[:, :, 4],
-        bar_tip_m=values[:, 1],
+        bar_tip_m=values[:, 1] if "bar" in case else None,
     )

@@ -1,10 +1,11 @@
-"""A bar pushed down into a bed of discs, for YADE 2023.02.
+"""Discs in a container, with or without a bar that is pushed down into them, for YADE 2023.02.
 
-Start it in the folder that holds inputs/ and output/:  /usr/bin/python3 inputs/yade_case.py
+Start it in the folder that holds inputs/ and output/:  /usr/bin/python3 inputs/yade_case.py ENGINE
+ENGINE is yade, or yade-averaged: with the paper's averaged displacement, see yade_averaged.py
 Reads  inputs/case.json, inputs/packing.csv, inputs/packing.json
-Writes output/samples.csv   one line per sample, the rest included; steps are counted from the start of the bar
-       output/frames.f64    doubles, from the start of the bar on; per frame: step, tip of the bar, then for every
-                            particle x, y, vx, vy, angle, angular velocity
+Writes output/samples.csv   one line per sample, the rest included; steps are counted from the end of the rest
+       output/frames.f64    doubles, from the end of the rest on; per frame: step, tip of the bar (NaN without one),
+                            then for every particle x, y, vx, vy, angle, angular velocity
 
 YADE is imported as a module: its launcher opens network ports. SI units; y is up.
 """
@@ -16,6 +17,8 @@ import sys
 from glob import glob
 
 import numpy as np
+
+from yade_averaged import AveragedDisplacement
 
 sys.path[1:1] = glob("/usr/lib/*/yade-double/py")
 
@@ -37,25 +40,26 @@ from yade.wrapper import (  # noqa: E402
     ViscElMat,
 )
 
+FEW = 30  # discs, of which every pair can be looked at in every step
+
+[engine_name] = sys.argv[1:]  # yade or yade-averaged
+
 with open("inputs/case.json", encoding="utf-8") as file:
     case = json.load(file)
 with open("inputs/packing.json", encoding="utf-8") as file:
     bar_tip_m = json.load(file)["bar_tip_m"]
 with open("inputs/packing.csv", encoding="utf-8") as file:
-    discs = [
-        (float(row["x_m"]), float(row["y_m"]), float(row["radius_m"]))
-        for row in csv.DictReader(file)
-    ]
+    discs = [{key: float(text) for key, text in row.items()} for row in csv.DictReader(file)]
 
-time, bar_case = case["time"], case["bar"]
-step_s = case["engines"]["yade"]["step_s"]
+time, bar_case = case["time"], case.get("bar")
+step_s = case["engines"][engine_name]["step_s"]
 rest, penetration, sample, frame = (
     round(time[key] / step_s)
     for key in ("rest_s", "penetration_s", "sample_interval_s", "frame_interval_s")
 )
 thickness_m = case["container"]["thickness_m"]
 density = case["particles"]["density_kg_m3"]
-clip_radius_m = max(radius for _, _, radius in discs)
+largest_radius_m = max(disc["radius_m"] for disc in discs)
 
 
 def in_series(wanted, particle):
@@ -91,36 +95,57 @@ friction_angle = MatchMaker(
 
 # Discs: spheres bound to the plane z = 0, with the mass and the inertia of discs set by hand.
 particles = []
-for x_m, y_m, radius_m in discs:
-    body = utils.sphere((x_m, y_m, 0), radius_m, material=particle_material)
-    mass_kg = density * math.pi * radius_m**2 * thickness_m
-    body.state.mass = mass_kg
-    body.state.inertia = (0.5 * mass_kg * radius_m**2,) * 3
+for disc in discs:
+    radius_m = disc["radius_m"]
+    body = utils.sphere((disc["x_m"], disc["y_m"], 0), radius_m, material=particle_material)
+    body.state.mass = density * math.pi * radius_m * radius_m * thickness_m
+    body.state.inertia = (0.5 * body.state.mass * radius_m * radius_m,) * 3
+    body.state.vel = (disc["velocity_x_m_s"], disc["velocity_y_m_s"], 0)
+    body.state.angVel = (0, 0, disc["angular_velocity_rad_s"])
     body.state.blockedDOFs = "zXY"
     particles.append(O.bodies[O.bodies.append(body)])
+masses_kg = np.array([body.state.mass for body in particles])
+inertias_kg_m2 = np.array([body.state.inertia[2] for body in particles])
 
 O.bodies.append(utils.wall(0.0, axis=0, sense=1, material=wall_material))
 O.bodies.append(utils.wall(case["container"]["width_m"], axis=0, sense=-1, material=wall_material))
-O.bodies.append(utils.wall(0.0, axis=1, sense=1, material=wall_material))
+floor_id = O.bodies.append(utils.wall(0.0, axis=1, sense=1, material=wall_material))
 
-# The bar is far deeper (z) than wide: a disc is pushed out along the least distance, z included.
-half_m = (
-    bar_case["width_m"] / 2,
-    bar_case["length_m"] / 2,
-    100 * clip_radius_m + bar_case["length_m"],
-)
-centre_m = (bar_case["centre_x_m"], bar_tip_m + half_m[1], 0)
-bar = O.bodies[O.bodies.append(utils.box(centre_m, half_m, fixed=True, material=wall_material))]
+bar = None
+if bar_case:
+    # The bar is far deeper (z) than wide: a disc is pushed out along the least distance, z included.
+    half_m = (
+        bar_case["width_m"] / 2,
+        bar_case["length_m"] / 2,
+        100 * largest_radius_m + bar_case["length_m"],
+    )
+    centre_m = (bar_case["centre_x_m"], bar_tip_m + half_m[1], 0)
+    bar = O.bodies[O.bodies.append(utils.box(centre_m, half_m, fixed=True, material=wall_material))]
 
-# Newton first: after O.run the positions, the velocities and the forces are those that the law has seen together. Its
+gravity_m_s2 = case["gravity_m_s2"]
+memory = None
+if engine_name == "yade-averaged":
+    memory = AveragedDisplacement(O.forces, [body.state for body in particles], step_s)
+    gravity_m_s2 *= memory.gravity_share
+
+collider = InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Box_Aabb()])
+if len(particles) <= FEW:
+    # Each pair is there from the start, in the order of the ids and for good: forces are summed up in that order.
+    collider.verletDist = 100 * (case["container"]["width_m"] + case["container"]["height_m"])
+    collider.targetInterv = -1
+    for first in range(len(particles)):
+        for second in range(first + 1, len(O.bodies)):
+            utils.createInteraction(first, second, virtualI=True)
+else:
+    collider.verletDist = 0.2 * largest_radius_m
+
+# Newton first: after a step the positions, the velocities and the forces are those that the law has seen together. Its
 # forces are then those of the step before, of which it would warn in every step.
-newton = NewtonIntegrator(damping=0, warnNoForceReset=False, gravity=(0, -case["gravity_m_s2"], 0))
+newton = NewtonIntegrator(damping=0, warnNoForceReset=False, gravity=(0, -gravity_m_s2, 0))
 O.engines = [
     newton,
     ForceResetter(),
-    InsertionSortCollider(
-        [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Box_Aabb()], verletDist=0.2 * clip_radius_m
-    ),
+    collider,
     InteractionLoop(
         [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()],
         [Ip2_ViscElMat_ViscElMat_ViscElPhys(frictAngle=friction_angle)],
@@ -147,7 +172,9 @@ def force_of(contact):
 
 
 def bar_forces():
-    """Force of the particles on the bar [N]: x, y, and y's shares of the tip and of the shaft."""
+    """Force of the particles on the bar [N]: x, y, and y's shares of the tip and of the shaft; 0 without one."""
+    if not bar:
+        return 0.0, 0.0, 0.0, 0.0
     total = O.forces.f(bar.id, sync=True)
     tip_m = bar.state.pos[1] - half_m[1]
     tip_y = shaft_y = 0.0
@@ -196,8 +223,6 @@ def state_of_particles():
     return np.array(rows)
 
 
-masses_kg = np.array([body.state.mass for body in particles])
-inertias_kg_m2 = np.array([body.state.inertia[2] for body in particles])
 angles = np.zeros(len(particles))
 
 
@@ -205,9 +230,11 @@ def record(step, samples, frames):
     """Append the sample and the frame that are due, forced out: progress shows, and a full disk is noticed."""
     global angles
     now = state_of_particles()
+    if memory:
+        now[:, [2, 3, 5]] = memory.velocities()
     if not np.isfinite(now).all():
         sys.exit(
-            f"positions or velocities are not finite {(step - rest) * step_s:.6g} s after the bar's start"
+            f"positions or velocities are not finite {(step - rest) * step_s:.6g} s after the rest"
         )
     angles += (
         np.remainder(now[:, 4] - angles + math.pi, 2 * math.pi) - math.pi
@@ -218,18 +245,19 @@ def record(step, samples, frames):
     )
     step -= rest
     if step % sample == 0:
-        row = [step, *bar_forces(), contact_count(), float(energy_J)]
+        floor_y = O.forces.f(floor_id, sync=True)[1]
+        row = [step, *bar_forces(), floor_y, contact_count(), float(energy_J)]
         print(*(repr(value) for value in row), sep=",", file=samples, flush=True)
     if step >= 0 and step % frame == 0:
-        tip_m = bar.state.pos[1] - half_m[1]
+        tip_m = bar.state.pos[1] - half_m[1] if bar else math.nan
         frames.write(np.concatenate([[step, tip_m], now.ravel()]).tobytes())
         frames.flush()
 
 
 def run():
-    """From the packing, at rest, to the end of the penetration."""
+    """From the packing to the end of the penetration."""
     newton.dead = True
-    O.run(1, True)  # the forces of the packing; nothing moves
+    O.step()  # the forces of the packing; nothing moves
     newton.dead = False
     end = rest + penetration
     stops = sorted({rest, *range(rest % sample, end + 1, sample), *range(rest, end + 1, frame)})
@@ -237,16 +265,18 @@ def run():
         "output/frames.f64", "wb"
     ) as frames:
         print(
-            "step,force_x_N,force_y_N,tip_force_y_N,shaft_force_y_N,contacts,kinetic_energy_J",
+            "step,force_x_N,force_y_N,tip_force_y_N,shaft_force_y_N,floor_force_y_N,contacts,kinetic_energy_J",
             file=samples,
         )
         done = 0
-        for step in stops:
-            if step > done:
-                O.run(step - done, True)
-                done = step
-            record(step, samples, frames)
-            if step == rest:
+        for stop in stops:
+            for _ in range(done, stop):
+                if memory:
+                    memory.add_force()
+                O.step()  # O.run would wait for up to 40 ms after its last step
+            done = stop
+            record(stop, samples, frames)
+            if stop == rest and bar:
                 bar.state.vel = (0, -bar_case["speed_m_s"], 0)
 
 

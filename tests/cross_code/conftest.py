@@ -15,7 +15,17 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "harness"))  # small_case.py
 @pytest.fixture(params=list(ENGINES))
 def engine(request):
     """Each engine in turn."""
-    found = get_engine(request.param)
+    return _require(request.param)
+
+
+@pytest.fixture
+def required():
+    """A function that ends the test unless this engine is here."""
+    return _require
+
+
+def _require(name):
+    found = get_engine(name)
     try:
         found.version()
     except EngineNotFound as error:

@@ -4,10 +4,11 @@ import json
 import math
 
 import pytest
+from few_particles import Disc, few_particles
 from small_case import small_case
 
 from crossdem.adapters.dataset import Dataset
-from crossdem.adapters.packing import Packing
+from crossdem.adapters.packing import COLUMNS, Packing, make_packing
 from crossdem.adapters.run import RunRequest, run_all
 
 RADIUS_M = 0.0025
@@ -18,8 +19,8 @@ WEIGHT_N = MASS_KG * 9.80665
 def packing_of(discs, bar_tip_m, folder):
     """A packing of these discs (x, y), all of one radius."""
     folder.mkdir()
-    rows = [f"{i},{x!r},{y!r},{RADIUS_M!r}\n" for i, (x, y) in enumerate(discs)]
-    (folder / "packing.csv").write_text("id,x_m,y_m,radius_m\n" + "".join(rows))
+    rows = [f"{i},{x!r},{y!r},{RADIUS_M!r},0,0,0\n" for i, (x, y) in enumerate(discs)]
+    (folder / "packing.csv").write_text("\n".join([",".join(COLUMNS), "".join(rows)]))
     about = {
         "seed": 1,
         "particles": len(discs),
@@ -101,3 +102,37 @@ def test_a_frictionless_wall_and_bar_let_a_disc_fall(engine, tmp_path):
     assert run.motion.velocity_m_s[0, 0, 1] == pytest.approx(-9.80665 * 0.05, rel=2e-3)
     assert run.motion.angular_velocity_rad_s[-1, 0] == pytest.approx(0, abs=1e-9)
     assert run.resistance["force_y_N"].abs().max() < 1e-12
+
+
+def run_few(engine, discs, tmp_path, *overrides, **options):
+    """A run of particles that the case itself names, from their first moment on."""
+    case = few_particles(discs, tmp_path, *overrides, **options)
+    packing = make_packing(case, 1, tmp_path / "packing")
+    [result] = run_all([RunRequest(case, packing, engine.name)], tmp_path / "out", 1)
+    assert result.status == "done", result.failure
+    return Dataset.read(result.dataset_folder)
+
+
+def test_a_disc_starts_with_its_velocity_and_spin(engine, tmp_path):
+    disc = Disc(0.01, 0.03, velocity_x=0.1, velocity_y=0.05, spin=7.0)
+    run = run_few(
+        engine, [disc], tmp_path, "gravity_m_s2=0.0", "time.penetration_s=0.02", "time.rest_s=0.0"
+    )
+    assert list(run.motion.position_m[0, 0]) == [0.01, 0.03]
+    assert list(run.motion.velocity_m_s[0, 0]) == [0.1, 0.05]
+    assert run.motion.position_m[-1, 0] == pytest.approx([0.012, 0.031], rel=1e-12)
+    assert run.motion.angular_velocity_rad_s[:, 0] == pytest.approx([7.0] * 3, rel=1e-12)
+    assert run.resistance["kinetic_energy_J"].iloc[0] == pytest.approx(
+        0.5 * MASS_KG * (0.1**2 + 0.05**2 + 0.5 * RADIUS_M**2 * 7.0**2), rel=1e-12
+    )
+
+
+def test_without_a_bar_its_forces_are_none_and_the_floor_carries_the_weight(engine, tmp_path):
+    sunk_m = WEIGHT_N / 1000
+    resting = [Disc(0.005, RADIUS_M - sunk_m), Disc(0.015, RADIUS_M - sunk_m)]
+    run = run_few(engine, resting, tmp_path, "time.penetration_s=0.3")
+    assert run.motion.bar_tip_m is None
+    table = run.resistance
+    assert not table[["depth_m", "force_x_N", "force_y_N", "tip_force_y_N"]].to_numpy().any()
+    assert table["floor_force_y_N"].to_numpy()[1:] == pytest.approx(-2 * WEIGHT_N, rel=1e-6)
+    assert run.motion.position_m[-1, :, 1] == pytest.approx(RADIUS_M - sunk_m, rel=1e-9)

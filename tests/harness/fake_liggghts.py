@@ -6,6 +6,14 @@ import sys
 import time
 from pathlib import Path
 
+EVERY_STEP = """\
+    Step    Atoms            CPU       floor_fo       touching       energy_s          tip_y        shaft_y 
+       1        2     2.9831e-05      -2.124581              2  1.7168364e-05              0              0 
+Loop time of 3.2054e-05 on 1 procs for 1 steps with 2 atoms, finish time Sun Jan  1 10:10:37 2000
+
+Setting atom values ...
+  2 settings made for vx
+  2 settings made for omegaz"""
 FAULT = os.environ.get("FAKE_FAULT", "none")
 
 
@@ -19,13 +27,15 @@ def main():
     numbers = dict(
         line.split()[1::2] for line in Path("inputs/numbers.in").read_text().splitlines()
     )
+    if numbers["averaged"] == "1":
+        print(EVERY_STEP, "LIGGGHTS says this once", EVERY_STEP, sep="\n", flush=True)
     first, start = int(numbers["first_step"]), int(numbers["start_step"])
     sample, frame = int(numbers["sample_steps"]), int(numbers["frame_steps"])
-    end = start + int(numbers["penetration_steps"])
+    end = first + int(numbers["steps"])
 
     with open("output/samples.txt", "w", encoding="ascii") as samples:
         samples.write("# title\n")
-        for step in range(first // sample * sample + sample, end + 1, sample):
+        for step in [first, *range(first // sample * sample + sample, end + 1, sample)]:
             if FAULT == "crash" and step > start:
                 print("ERROR: Lost atoms: original 40 current 39 (thermo.cpp:389)", flush=True)
                 sys.exit(1)
@@ -36,7 +46,7 @@ def main():
                 time.sleep(3600)
             force = "nan" if FAULT == "nan force" and step == end else "0.25"
             if not (FAULT == "missing samples" and step == end):
-                samples.write(f"{step} 0.0 {force} 0.2 0.05 70 1e-10\n")
+                samples.write(f"{step} 0.0 {force} 0.2 0.05 -2.2 70 1e-10\n")
             samples.flush()
             if FAULT == "slow":
                 time.sleep(0.02)

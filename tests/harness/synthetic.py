@@ -48,6 +48,7 @@ def resistance_table(force_N, depth_m=None, shaft_share: float = SHAFT_SHARE) ->
             "force_y_N": force_N,
             "tip_force_y_N": force_N - shaft_N,
             "shaft_force_y_N": shaft_N,
+            "floor_force_y_N": -2.2,
             "contacts": 1700,
             "kinetic_energy_J": 7e-6,
         }

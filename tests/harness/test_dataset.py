@@ -9,7 +9,7 @@ import pytest
 import synthetic
 
 from crossdem.adapters import dataset as dataset_module
-from crossdem.adapters.dataset import Dataset, DatasetError
+from crossdem.adapters.dataset import Dataset, DatasetError, read_motion, write_motion
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +95,50 @@ def test_radii_of_too_few_particles_or_none_are_refused(whole):
         spoil(whole, radius_m=whole.radius_m[:-1])
     with pytest.raises(DatasetError, match="radius"):
         spoil(whole, radius_m=0 * whole.radius_m)
+
+
+@pytest.fixture
+def without_bar(whole):
+    """Parts of the same run, had there been no bar."""
+    case = {key: value for key, value in whole.case.items() if key != "bar"}
+    none = ("depth_m", "force_x_N", "force_y_N", "tip_force_y_N", "shaft_force_y_N")
+    table = whole.resistance.assign(**dict.fromkeys(none, 0.0))
+    return {"case": case, "resistance": table, "motion": replace(whole.motion, bar_tip_m=None)}
+
+
+def test_a_run_without_a_bar_is_accepted_and_reads_back(whole, without_bar, tmp_path):
+    run = spoil(whole, **without_bar)
+    write_motion(
+        tmp_path / "motion.h5",
+        run.motion,
+        run.radius_m,
+        "native",
+        "1",
+        box_m=(1, 1),
+        time_step_s=1e-4,
+    )
+    motion, _ = read_motion(tmp_path / "motion.h5")
+    assert motion.bar_tip_m is None
+    assert np.array_equal(motion.position_m, run.motion.position_m)
+
+
+def test_a_bar_must_be_in_the_case_and_in_the_motion_or_in_neither(whole, without_bar):
+    with pytest.raises(DatasetError, match="the case has a bar, the motion none"):
+        spoil(whole, motion=without_bar["motion"])
+    with pytest.raises(DatasetError, match="the motion has a bar, the case none"):
+        spoil(whole, **(without_bar | {"motion": whole.motion}))
+
+
+def test_without_a_bar_nothing_goes_down_and_no_particle_is_in_it(whole, without_bar):
+    with pytest.raises(DatasetError, match="depth_m"):
+        spoil(whole, **(without_bar | {"resistance": whole.resistance}))
+    spoil(
+        whole,
+        **(
+            without_bar
+            | {"motion": moved(without_bar["motion"], "position_m", (90, 7), (0.075, 0.1))}
+        ),
+    )
 
 
 @pytest.mark.parametrize("key", ["run_key", "gates", "engine_version", "limitations"])

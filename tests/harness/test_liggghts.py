@@ -1,12 +1,17 @@
 """The input that LIGGGHTS gets: numbers of the case, and no word of it."""
 
 import re
+from dataclasses import replace
 
+import pandas as pd
 import pytest
+from few_particles import Disc, few_particles
 from small_case import small_case
 
+from crossdem.adapters import liggghts_input
 from crossdem.adapters.case import Case
-from crossdem.adapters.liggghts import Liggghts
+from crossdem.adapters.liggghts import Liggghts, LiggghtsAveraged
+from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run_folder import prepare
 from crossdem.adapters.schedule import Schedule
 
@@ -86,19 +91,57 @@ def test_the_bar_ends_with_its_bottom_face_which_then_owns_the_corners(case, pac
     assert normals == [["-1", "0", "0"]] * 2 + [["1", "0", "0"]] * 2 + [["0", "-1", "0"]] * 2
 
 
+def test_discs_start_with_their_velocity_and_spin(tmp_path):
+    disc = Disc(0.01, 0.03, velocity_x=0.1, velocity_y=-1 / 3, spin=7.0)
+    case = few_particles([disc], tmp_path)
+    folder = inputs(case, make_packing(case, 1, tmp_path / "packing"), tmp_path / "run")
+    last = (folder / "particles.data").read_text().splitlines()[-1].split()
+    assert [float(text) for text in last] == [1, 0.1, -1 / 3, 0, 0, 0, 7.0]
+
+
+@pytest.mark.parametrize("bars", [0, 1])
+def test_the_deck_includes_what_the_case_has(tmp_path, bars):
+    case = few_particles([Disc(0.01, 0.03)], tmp_path, bar_tip_m=0.04 if bars else None)
+    packing = make_packing(case, 1, tmp_path / "packing")
+    folder = inputs(case, packing, tmp_path / "run")
+    assert numbers(case, packing, tmp_path / "again")["bars"] == str(bars)
+    assert (folder / f"liggghts_bars_{bars}.in").exists() and (folder / "bar.stl").exists() == bars
+    assert not (folder / f"liggghts_bars_{1 - bars}.in").exists()
+
+
+def test_its_own_integrator_and_the_papers_are_two_engines_of_one_deck(case, packing, tmp_path):
+    averaged = LiggghtsAveraged()
+    prepare(case, packing, averaged, tmp_path / "averaged")
+    folder = tmp_path / "averaged" / "inputs"
+    assert "variable averaged string 1\n" in (folder / "numbers.in").read_text()
+    assert (folder / "liggghts_averaged_1.in").exists()
+    assert numbers(case, packing, tmp_path / "run")["averaged"] == "0"
+    assert averaged.schedule(case).step_s == 1e-4 and ENGINE.schedule(case).step_s == 5e-5
+    assert averaged.digest() == ENGINE.digest()  # of all files, whatever is included
+    assert "set after every step" in averaged.limitations(case)[0]
+
+
+def test_few_discs_lie_in_one_bin_and_many_in_bins_of_liggghts_own(case, packing, tmp_path):
+    assert float(numbers(case, packing, tmp_path / "few")["bin_m"]) > 2 * 0.06
+    many = replace(packing, particles=pd.concat([packing.particles] * 126, ignore_index=True))
+    text = liggghts_input.numbers(case.resolved, ENGINE.schedule(case), many, False)
+    assert "variable bin_m string 0\n" in text
+
+
 @pytest.mark.parametrize("rest_s", [0.3, 0.305, 0.00005])
 def test_the_bar_starts_at_a_step_of_samples_and_frames_whatever_the_rest(
     packing, tmp_path, rest_s
 ):
-    case = small_case(f"time.rest_s={rest_s}", "time.step_s=5e-5")
+    averaged = "engines.yade-averaged.step_s=5e-5"
+    case = small_case(f"time.rest_s={rest_s}", "time.step_s=5e-5", averaged)
     found = {
         name: int(text)
         for name, text in numbers(case, packing, tmp_path / "run").items()
         if "step" in name and name != "step_s"
     }
     schedule = Schedule.of(case.resolved, 5e-5)
-    assert found["first_step"] + found["rest_steps"] == found["start_step"]
-    assert found["rest_steps"] == round(rest_s / 5e-5)
+    assert found["start_step"] - found["first_step"] == round(rest_s / 5e-5)
+    assert found["first_step"] + found["steps"] - found["start_step"] == schedule.penetration
     assert found["first_step"] >= 0
     assert found["start_step"] % schedule.sample == found["start_step"] % schedule.frame == 0
 

@@ -11,10 +11,12 @@ import time
 from pathlib import Path
 
 import pytest
+from few_particles import Disc, few_particles
 from small_case import small_case
 
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.one_run import Limits
+from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run import RunRequest, run_all
 
 HERE = Path(__file__).parent
@@ -128,10 +130,23 @@ def test_a_program_that_cannot_say_its_version_is_a_missing_engine(case, packing
 
 
 def test_a_case_beyond_an_engine_is_not_run(fake, packing, tmp_path):
-    result = liggghts(small_case("time.rest_s=0.0"), packing, tmp_path / "out")
+    result = liggghts(small_case('scheme.bar_corner="faces_only"'), packing, tmp_path / "out")
     assert result.status == "unsupported"
-    assert "time.rest_s = 0" in result.failure
+    assert "faces_only" in result.failure
     assert fake.process_ids() == []
+
+
+def test_a_failure_without_a_bar_names_the_time(fake, tmp_path):
+    fake.fault("crash")
+    case = few_particles([Disc(0.01, 0.03)], tmp_path, "time.rest_s=0.001")
+    result = liggghts(case, make_packing(case, 1, tmp_path / "packing"), tmp_path / "out")
+    assert re.search("status 1 after 0 s: Lost atoms", result.failure), result.failure
+
+
+def test_what_an_engine_repeats_in_every_step_is_not_kept(fake, case, packing, tmp_path):
+    [result] = run_all([RunRequest(case, packing, "liggghts-averaged")], tmp_path / "out", 1)
+    assert result.status == "done", result.failure
+    assert (result.dataset_folder / "engine.log").read_text() == "LIGGGHTS says this once\n"
 
 
 def test_a_failure_does_not_stop_the_others_and_results_keep_the_order(

@@ -6,10 +6,10 @@ from small_case import small_case
 
 from crossdem.adapters.engine import EngineFailure
 from crossdem.adapters.run_folder import prepare
-from crossdem.adapters.yade import Yade
+from crossdem.adapters.yade import Yade, YadeAveraged
 
 ENGINE = Yade()
-COLUMNS = "step,force_x_N,force_y_N,tip_force_y_N,shaft_force_y_N,contacts,kinetic_energy_J"
+COLUMNS = "step,force_x_N,force_y_N,tip_force_y_N,shaft_force_y_N,floor_force_y_N,contacts,kinetic_energy_J"
 
 
 def test_it_reads_the_case_and_the_packing_as_they_are(case, packing, tmp_path):
@@ -17,12 +17,22 @@ def test_it_reads_the_case_and_the_packing_as_they_are(case, packing, tmp_path):
     inputs = tmp_path / "run" / "inputs"
     assert (inputs / "case.json").read_bytes() == case.canonical
     assert (inputs / "packing.csv").read_bytes() == (packing.folder / "packing.csv").read_bytes()
-    assert (inputs / ENGINE.script.name).read_bytes() == ENGINE.script.read_bytes()
+    for script in (ENGINE.script, ENGINE.memory_script):
+        assert (inputs / script.name).read_bytes() == script.read_bytes()
 
 
 def test_the_launcher_which_opens_ports_is_not_used(case, tmp_path):
-    assert ENGINE.command(case, tmp_path) == ["/usr/bin/python3", "inputs/yade_case.py"]
+    assert ENGINE.command(case, tmp_path) == ["/usr/bin/python3", "inputs/yade_case.py", "yade"]
     assert ENGINE.environment()["OMP_NUM_THREADS"] == "1"
+
+
+def test_the_papers_averaged_displacement_is_an_engine_of_the_same_script(case, tmp_path):
+    averaged = YadeAveraged()
+    assert averaged.command(case, tmp_path)[1:] == ["inputs/yade_case.py", "yade-averaged"]
+    assert averaged.schedule(case).step_s == 1e-4 and ENGINE.schedule(case).step_s == 5e-5
+    assert averaged.digest() == ENGINE.digest() != ""
+    said = averaged.limitations(case)
+    assert "memory force" in said[0] and not any("half a time step" in line for line in said)
 
 
 def test_an_undamped_wall_beside_damped_particles_is_beyond_it():
@@ -43,7 +53,7 @@ def output(case, packing, tmp_path):
     prepare(case, packing, ENGINE, tmp_path / "run")
     schedule = ENGINE.schedule(case)
     steps = range(-schedule.rest, schedule.penetration + 1, schedule.sample)
-    rows = [f"{step},0.0,0.25,0.2,0.05,70,1e-10" for step in steps]
+    rows = [f"{step},0.0,0.25,0.2,0.05,-2.2,70,1e-10" for step in steps]
     folder = tmp_path / "run" / "output"
     (folder / "samples.csv").write_text("\n".join([COLUMNS, *rows, ""]))
     discs = np.zeros((40, 6))

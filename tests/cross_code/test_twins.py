@@ -1,0 +1,127 @@
+"""That the native schemes do what LIGGGHTS and YADE do: the same trajectories, in whole runs of the real engines.
+
+A limit of 0 asks for the same bits. Where it is above, the sums of forces are in another order: YADE keeps many
+particles' contacts in the order in which its collider finds them, and which particle of a pair it takes for the first
+follows from that.
+"""
+
+import numpy as np
+import pytest
+from few_particles import Disc, few_particles, heap, top_of
+from small_case import REFERENCE_CASE
+
+from crossdem.adapters.case import load_case, varied
+from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.packing import make_packing
+from crossdem.adapters.run import RunRequest, run_all
+
+SCHEMES = {
+    "liggghts": "liggghts",
+    "yade": "yade",
+    "liggghts-averaged": "liggghts_averaged",
+    "yade-averaged": "yade_averaged",
+}
+WIDTH_M = 0.02
+CLOSE = ("time.frame_interval_s=0.001",)
+FREE = (*CLOSE, "gravity_m_s2=0.0", "container.width_m=0.04")
+
+
+def one_dropped(folder):
+    disc = Disc(0.008, 0.012, velocity_x=0.3, spin=-40.0)
+    return few_particles([disc], folder, *CLOSE, "time.penetration_s=0.3")
+
+
+def head_on(folder):
+    pair = [Disc(0.015, 0.03, velocity_x=0.2), Disc(0.022, 0.03, 0.002, velocity_x=-0.3)]
+    return few_particles(pair, folder, *FREE)
+
+
+def oblique(folder):
+    pair = [
+        Disc(0.015, 0.030, velocity_x=0.2, velocity_y=0.05, spin=15.0),
+        Disc(0.0205, 0.0315, 0.002, velocity_x=-0.2, spin=-40.0),
+    ]
+    return few_particles(pair, folder, *FREE)
+
+
+def wall_to_wall(folder):
+    """Into a side wall and the floor, sliding and sticking; hardly damped, so that it bounces."""
+    damping = [
+        f"contact.particle_wall.{key}_damping_N_s_m={value}"
+        for key, value in (("normal", 0.1), ("shear", 0.05))
+    ]
+    disc = Disc(0.016, 0.006, velocity_x=0.4, velocity_y=-0.3, spin=60.0)
+    return few_particles([disc], folder, *CLOSE, *damping, "time.penetration_s=0.3")
+
+
+def five_in_a_box(folder):
+    return few_particles(heap(5, WIDTH_M, seed=2), folder, *CLOSE, "time.penetration_s=0.5")
+
+
+def bar_and_24(folder):
+    discs = heap(24, WIDTH_M, seed=3)
+    way = ("time.penetration_s=0.1", "bar.centre_x_m=0.009")
+    return few_particles(discs, folder, *CLOSE, *way, bar_tip_m=top_of(discs))
+
+
+def whole_bed(folder):
+    changes = ("time.rest_s=0.0", "time.penetration_s=0.1", "time.frame_interval_s=0.01")
+    return load_case(REFERENCE_CASE, changes)
+
+
+# The largest difference of a position [m] in any frame, by case and engine; 0: the same bits.
+LIMITS_M = {
+    one_dropped: {},
+    head_on: {},
+    oblique: {},
+    wall_to_wall: {},
+    five_in_a_box: {},
+    bar_and_24: {},
+    whole_bed: {"yade": 1e-12, "yade-averaged": 1e-12},
+}
+
+
+@pytest.fixture(params=list(SCHEMES))
+def engine_name(request, required):
+    return required(request.param).name
+
+
+def twins(case, engine_name, folder):
+    """The engine's run, and the native one of the scheme of its name at its time step."""
+    scheme = [f"scheme.name={SCHEMES[engine_name]}", f"time.step_s={case.step_s(engine_name)!r}"]
+    packing = make_packing(case, 1, folder / "packing")
+    requests = [
+        RunRequest(case, packing, engine_name),
+        RunRequest(varied(case, scheme), packing, "native"),
+    ]
+    results = run_all(requests, folder / "out", 1)
+    assert [result.failure for result in results] == [None, None]
+    return [Dataset.read(result.dataset_folder) for result in results]
+
+
+def parting(engine, native):
+    """The largest differences in any frame or sample, by what differs."""
+    of = {
+        "position_m": lambda run: run.motion.position_m,
+        "velocity_m_s": lambda run: run.motion.velocity_m_s,
+        "angular_velocity_rad_s": lambda run: run.motion.angular_velocity_rad_s,
+        "bar_force_N": lambda run: run.resistance["force_y_N"].to_numpy(),
+        "floor_force_N": lambda run: run.resistance["floor_force_y_N"].to_numpy(),
+    }
+    return {
+        name: float(np.max(np.abs(values(engine) - values(native)))) for name, values in of.items()
+    }
+
+
+@pytest.mark.parametrize("case_of", LIMITS_M, ids=lambda case_of: case_of.__name__)
+def test_the_native_scheme_of_its_name_moves_every_particle_alike(case_of, engine_name, tmp_path):
+    case = case_of(tmp_path)
+    engine, native = twins(case, engine_name, tmp_path)
+    parted, step_s = parting(engine, native), case.step_s(engine_name)
+    print(f"{case_of.__name__}, {engine_name}: {parted}")
+    limit_m = LIMITS_M[case_of].get(engine_name, 0.0)
+    assert parted["position_m"] <= limit_m, parted
+    assert parted["velocity_m_s"] * step_s <= limit_m, parted
+    assert parted["angular_velocity_rad_s"] * step_s * engine.radius_m.max() <= limit_m, parted
+    # Sums over all contacts, here in the order of the particles and there in that of the contacts.
+    assert max(parted["bar_force_N"], parted["floor_force_N"]) <= 1e-12 + 1000 * limit_m, parted
