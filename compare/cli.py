@@ -11,11 +11,12 @@ import click
 from crossdem import ExitCode, __version__
 from crossdem.adapters.case import CaseError
 from crossdem.adapters.dataset import DatasetError
-from crossdem.adapters.engines import ENGINES
+from crossdem.adapters.engines import DEFAULT_ENGINES, ENGINES
 from crossdem.adapters.solver import SolverError
 from crossdem.adapters.workspace import WorkspaceError
 
 from . import commands
+from .ingredients import TARGETS
 from .doctor import doctor as examine
 
 
@@ -25,6 +26,16 @@ def _engine_names(context, parameter, text: str) -> list[str]:
         if name not in ENGINES:
             raise click.BadParameter(f"no engine {name!r}; there are {', '.join(ENGINES)}")
     return names
+
+
+def _time_steps(context, parameter, text: str) -> list[float]:
+    try:
+        steps = sorted({float(step) for step in text.split(",") if step.strip()})
+    except ValueError as error:
+        raise click.BadParameter(f"{text!r} is not a list of numbers such as 5e-5,1e-4") from error
+    if not all(0 < step < float("inf") for step in steps):
+        raise click.BadParameter("a time step is a number above 0")
+    return steps
 
 
 _case = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
@@ -37,18 +48,24 @@ _overrides = click.option(
 )
 _engines = click.option(
     "--engines",
-    default=",".join(ENGINES),
+    default=",".join(DEFAULT_ENGINES),
     show_default=True,
     callback=_engine_names,
     help="Which engines to run, separated by commas.",
 )
-_seeds = click.option(
-    "--seeds",
-    type=click.IntRange(1, 1000),
-    default=2,
-    show_default=True,
-    help="How many packings; every engine runs each of them.",
-)
+
+
+def _seeds_of(default: int, help_text: str):
+    return click.option(
+        "--seeds",
+        type=click.IntRange(1, 1000),
+        default=default,
+        show_default=True,
+        help=help_text,
+    )
+
+
+_seeds = _seeds_of(2, "How many packings; every engine runs each of them.")
 _out = click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -83,7 +100,11 @@ def cli():
 @cli.command()
 @_with(_case, _engines, _seeds, _out, _overrides, _jobs)
 def check(**options):
-    """Run CASE in every engine, compare, and end with a verdict and a report."""
+    """Run CASE in every engine, compare, and end with a verdict and a report.
+
+    A folder of cases is a ladder: each engine against its native twin and against closed forms, at three time steps.
+    Its particles are given, so that it needs no seeds.
+    """
     return commands.check(**options)
 
 
@@ -116,6 +137,61 @@ def resolve(**options):
 def compare(**options):
     """Compare runs that exist: folders such as results/bar_penetration/runs/*."""
     return commands.compare(**options)
+
+
+@cli.command()
+@_case
+@click.option(
+    "--from",
+    "origin",
+    type=click.Choice(["paper"]),
+    default="paper",
+    show_default=True,
+    help="Where the walk starts: the scheme of the paper.",
+)
+@click.option(
+    "--to",
+    "target",
+    type=click.Choice(TARGETS),
+    required=True,
+    help="Whose scheme it leads to; the last step is that code itself.",
+)
+@_seeds_of(16, "How many packings; every step of the walk runs all of them.")
+@click.option(
+    "--engine-seeds",
+    type=click.IntRange(1, 1000),
+    help="On how many of them the other code itself runs. [default: all]",
+)
+@_with(_out, _overrides, _jobs)
+def explain(**options):
+    """Walk from the paper's scheme to another code, and say what each ingredient changes."""
+    return commands.explain(**options)
+
+
+@cli.command()
+@_with(_case, _engines)
+@click.option(
+    "--seed", type=click.IntRange(1, 1000), default=1, show_default=True, help="Of the packing."
+)
+@_with(_out, _overrides, _jobs)
+def horizon(**options):
+    """Say up to when CASE can be compared particle by particle: a 1e-12 m twin in each engine."""
+    return commands.horizon(**options)
+
+
+@cli.command()
+@_with(_case, _seeds_of(1, "How many packings."))
+@click.option(
+    "--time-steps",
+    "steps_s",
+    default="",
+    callback=_time_steps,
+    help="Time steps in s, separated by commas. [default: about the bounds]",
+)
+@_with(_out, _overrides, _jobs)
+def stability(**options):
+    """Say at which time steps the bed of CASE rests, under each native scheme."""
+    return commands.stability(**options)
 
 
 @cli.command()

@@ -13,16 +13,27 @@ from crossdem.adapters.engines import unknown_engines
 from crossdem.adapters.workspace import Workspace
 
 from .comparison import case_faults, compare_runs, comparison_faults
+from .explain import explain_case
+from .horizon import Horizon
+from .horizon_runs import find_horizon
 from .runs import Runs, run_engines, write_inputs
+from .stability import FAILED
+from .stability_runs import map_stability
 from .summary import print_summary
 
 
 def check(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
+    if case_file.is_dir():
+        from .ladder_command import check_folder  # here: its solvers of equations take as long
+
+        return check_folder(case_file, engines, out, overrides, jobs)
     case = _load(case_file, overrides)
     with _workspace(case, overrides, out) as workspace:
         runs = run_engines(case, engines, seeds, workspace, jobs, Console())
+        able = [engine for engine in engines if (engine, 1) not in runs.failures]
+        found = find_horizon(case, able, 1, workspace, jobs, Console()) if able else None
     datasets = [Dataset.read(folder) for folder in runs.folders]
-    return _report(case, datasets, runs, workspace)
+    return _report(case, datasets, runs, workspace, found)
 
 
 def run(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
@@ -52,6 +63,45 @@ def compare(folders, out) -> ExitCode:
     )
 
 
+def explain(case_file, origin, target, seeds, engine_seeds, out, overrides, jobs) -> ExitCode:
+    from .explain_report import print_explanation, write_explanation  # here: as in _report
+
+    case = _load(case_file, [*overrides, f"scheme.name={origin}"])
+    with _workspace(case, overrides, out) as workspace:
+        attribution = explain_case(
+            case, target, seeds, engine_seeds or seeds, workspace, jobs, Console()
+        )
+        page = write_explanation(attribution, workspace.root / f"explain-{target}")
+    print_explanation(attribution, page)
+    missing = not len(attribution.stations[-1].values)
+    return ExitCode.ENGINE_FAILED if missing else ExitCode.AGREES
+
+
+def horizon(case_file, engines, seed, out, overrides, jobs) -> ExitCode:
+    from .horizon_report import print_horizon, write_horizon  # here: as in _report
+
+    case = _load(case_file, overrides)
+    with _workspace(case, overrides, out) as workspace:
+        found = find_horizon(case, engines, seed, workspace, jobs, Console())
+        page = write_horizon(case, found, workspace.root / "horizon")
+    print_horizon(found, page)
+    if found.strays:
+        return ExitCode.DIFFERS
+    return ExitCode.ENGINE_FAILED if found.failures else ExitCode.AGREES
+
+
+def stability(case_file, steps_s, seeds, out, overrides, jobs) -> ExitCode:
+    from .stability_report import print_stability, write_stability  # here: as in _report
+
+    case = _load(case_file, overrides)
+    with _workspace(case, overrides, out) as workspace:
+        found = map_stability(case, steps_s, seeds, workspace, jobs, Console())
+        page = write_stability(found, workspace.root / "stability")
+    print_stability(found, page)
+    failed = any(trial.outcome == FAILED for trial in found.trials)
+    return ExitCode.ENGINE_FAILED if failed else ExitCode.AGREES
+
+
 def _load(case_file: Path, overrides: list[str]) -> Case:
     case = load_case(case_file, overrides, lambda raw: case_faults(raw) + unknown_engines(raw))
     for warning in case.warnings:
@@ -71,10 +121,16 @@ def _workspace(case: Case, overrides: list[str], out: Path | None):
         raise
 
 
-def _report(case: Case, datasets: list[Dataset], runs: Runs, workspace: Workspace) -> ExitCode:
+def _report(
+    case: Case,
+    datasets: list[Dataset],
+    runs: Runs,
+    workspace: Workspace,
+    horizon: Horizon | None = None,
+) -> ExitCode:
     from .report import write_report  # here: its drawing library takes half a second to load
 
-    comparison = compare_runs(case, datasets, runs.failures, runs.unsupported)
+    comparison = compare_runs(case, datasets, runs.failures, runs.unsupported, horizon)
     page = write_report(comparison, workspace.root)
     print_summary(comparison, page)
     return comparison.verdict.exit_code

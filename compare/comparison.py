@@ -14,7 +14,9 @@ from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.engines import ENGINES
 from crossdem.adapters.gates import REFERENCE, contacts_at_rest, with_contacts_gate
 
+from .answers import answer_faults
 from .checks import Check, CheckResult, check_faults, evaluate
+from .horizon import Horizon
 from .quantities import endpoints, unknown_quantities
 from .verdict import Verdict, decide
 
@@ -38,6 +40,7 @@ class Comparison:
     endpoints: pd.DataFrame  # quantities.endpoints
     results: tuple[CheckResult, ...]
     verdict: Verdict
+    horizon: Horizon | None = None  # None: nothing was compared particle by particle
 
     @property
     def seeds(self) -> tuple[int, ...]:
@@ -56,10 +59,12 @@ def compare_runs(
     datasets: Iterable[Dataset],
     failures: dict[tuple[str, int], str] | None = None,
     unsupported: frozenset[tuple[str, int]] = frozenset(),
+    horizon: Horizon | None = None,
 ) -> Comparison:
     """Compare the `datasets` of one `case`; `failures` says for each (engine, seed) without one why.
 
-    Those of them that are `unsupported` make their engine not comparable; it has not failed.
+    Those of them that are `unsupported` make their engine not comparable; it has not failed. `horizon` holds the
+    comparison particle by particle: an engine that differs there differs, whatever the statistics say.
 
     Raises ComparisonError when the datasets are not of this case, a run is there twice, or a check makes no sense.
     """
@@ -80,6 +85,8 @@ def compare_runs(
         for check in Check.of_case(case.resolved)
     )
     failed = {run: why for run, why in failures.items() if run not in unsupported}
+    if horizon:
+        failed |= {run: f"from the packing: {why}" for run, why in horizon.failures.items()}
     return Comparison(
         case,
         engines,
@@ -87,7 +94,8 @@ def compare_runs(
         failures,
         table,
         results,
-        decide(engines, results, failed, _failed_gates(runs)),
+        decide(engines, results, failed, _failed_gates(runs), horizon.strays if horizon else ()),
+        horizon,
     )
 
 
@@ -111,7 +119,7 @@ def gated(runs: Sequence[Dataset]) -> tuple[Dataset, ...]:
 
 def case_faults(case: dict) -> list[str]:
     """A line for everything in `case`, resolved or as read, that only the comparison can know to be wrong."""
-    return unknown_quantities(case) + check_faults(case)
+    return unknown_quantities(case) + check_faults(case) + answer_faults(case)
 
 
 def comparison_faults(case: Case, datasets: Sequence[Dataset]) -> list[str]:

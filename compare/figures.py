@@ -5,37 +5,20 @@ No text of a case or a dataset is drawn: titles and legends belong to the page.
 
 from __future__ import annotations
 
-import io
-import re
-
 import matplotlib
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm
-from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from . import motion, resistance
 from .colours import EngineStyle, engine_styles
 from .comparison import Comparison
+from .drawing import INK, svg
 
-INK = "#0a0b0c"  # stands for the page's text colour, which Matplotlib cannot know
 FINE_BIN_M = 0.001  # of the thin lines: shows the fluctuation with few points
 COLOUR_STEPS = 8
-PER_INCH = 96  # CSS pixels
-STYLE = {
-    "svg.fonttype": "none",
-    "font.size": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.alpha": 0.18,
-    "grid.color": INK,
-    "legend.frameon": False,
-    **{key: INK for key in ("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color")},
-    "ytick.color": INK,
-}
 
 
 def resistance_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
@@ -55,7 +38,7 @@ def resistance_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
         axes.set(xlabel="depth of the tip, cm", ylabel="resistance, N")
         axes.set_xlim(left=0)
 
-    return _svg(draw, size_px)
+    return svg(draw, size_px)
 
 
 def movement_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
@@ -74,7 +57,7 @@ def movement_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
         axes.set(xlabel="depth of the tip, cm", ylabel="downward movement, mm")
         axes.set_xlim(left=0)
 
-    return _svg(draw, size_px)
+    return svg(draw, size_px)
 
 
 def surface_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
@@ -94,7 +77,7 @@ def surface_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
         axes.axvspan(left_cm, left_cm + 100 * bar["width_m"], color=INK, alpha=0.15, linewidth=0)
         axes.set(xlabel="x, cm", ylabel="height of the surface, cm")
 
-    return _svg(draw, size_px)
+    return svg(draw, size_px)
 
 
 def displacement_plots(comparison: Comparison, size_px: tuple[int, int]) -> dict[str, str]:
@@ -109,7 +92,7 @@ def displacement_plots(comparison: Comparison, size_px: tuple[int, int]) -> dict
     levels_mm = _levels_mm(max(_length_mm(field).max() for field in fields.values()))
     tip_m = comparison.datasets[0].motion.bar_tip_m[-1]
     return {
-        engine: _svg(lambda axes: _draw_field(axes, field, comparison, tip_m, levels_mm), size_px)
+        engine: svg(lambda axes: _draw_field(axes, field, comparison, tip_m, levels_mm), size_px)
         for engine, field in fields.items()
     }
 
@@ -188,16 +171,3 @@ def _thick(axes: Axes, x, y, style: EngineStyle) -> None:
         markevery=max(1, len(x) // 12),
         dashes=style.dash or (None, None),
     )
-
-
-def _svg(draw, size_px: tuple[int, int]) -> str:
-    """The drawing of `draw(axes)`, as an <svg> element that scales with its surroundings."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=[length / PER_INCH for length in size_px], layout="constrained")
-        draw(figure.add_subplot())
-        text = io.StringIO()
-        figure.savefig(text, format="svg", transparent=True)
-    svg = text.getvalue()
-    svg = svg[svg.index("<svg") :]
-    svg = re.sub(r"<metadata>.*?</metadata>|<style.*?</style>", "", svg, flags=re.DOTALL)
-    return svg.replace(INK, "currentColor")

@@ -14,15 +14,18 @@ LEAST_M = 1e-18  # below what doubles resolve here; what is equal to the last bi
 TOP_ROOM = 30  # above the largest drift, as a factor
 
 
-def draw_growth(horizon: Horizon, axes: Axes) -> None:
-    """Thick: drift of the twin; thin, dotted: difference to the native scheme; level lines: limit and horizon."""
+def draw_growth(horizon: Horizon, axes: Axes, legend: bool = False) -> None:
+    """Thick: drift of the twin; thin, dotted: difference to the native scheme; level lines: limit and horizon.
+
+    A page has its own legend; a picture that stands alone needs one.
+    """
     styles = engine_styles([one.engine for one in horizon.engines])
     top_m = LIMIT_M
     for one in horizon.engines:
         style = styles[one.engine]
-        for curve, options in (
-            (one.growth, {"linewidth": 2.2, "marker": style.marker, "markersize": 4}),
-            (one.closeness, {"linewidth": 1.2, "linestyle": ":"}),
+        for curve, name, options in (
+            (one.growth, "", {"linewidth": 2.2, "marker": style.marker, "markersize": 4}),
+            (one.closeness, " less its native scheme", {"linewidth": 1.2, "linestyle": ":"}),
         ):
             if curve is None:
                 continue
@@ -32,6 +35,7 @@ def draw_growth(horizon: Horizon, axes: Axes) -> None:
                 curve.time_s,
                 np.maximum(values_m, LEAST_M),
                 color=style.colour,
+                label=one.engine + name,
                 markevery=max(1, len(curve.time_s) // 12),
                 **options,
             )
@@ -46,3 +50,5 @@ def draw_growth(horizon: Horizon, axes: Axes) -> None:
     axes.set_xlim(0, horizon.recorded_s)
     axes.set_ylim(LEAST_M / 2, TOP_ROOM * max(top_m, lost_m or 0))
     axes.set(xlabel="time from the packing, s", ylabel="largest distance of any particle, m")
+    if legend:
+        axes.legend(loc="lower right", fontsize=8, ncols=2)

@@ -34,7 +34,7 @@ def write_horizon(case: Case, horizon: Horizon, folder: Path) -> Path:
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     write_whole(folder / "horizon.json", (text + "\n").encode())
     draw = partial(draw_growth, horizon)
-    picture = png_figure(lambda figure: draw(figure.add_subplot()), WIDE_PX)
+    picture = png_figure(lambda figure: draw(figure.add_subplot(), legend=True), WIDE_PX)
     write_whole(folder / "horizon.png", picture)
     engines = [one.engine for one in horizon.engines]
     values = {

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from . import checks
+from . import checks, horizon_tables
 from .comparison import Comparison
 from .wording import explanation, printable
 
@@ -23,7 +23,7 @@ ENDS = {
 def junit_xml(comparison: Comparison) -> bytes:
     root = ElementTree.Element("testsuites", name=printable(comparison.case.name))
     verdict = comparison.verdict
-    _suite(
+    suite(
         root,
         "verdict",
         [("verdict", verdict.word, "failure" if verdict.exit_code else None, verdict.sentence)],
@@ -33,8 +33,8 @@ def junit_xml(comparison: Comparison) -> bytes:
         (engine, f"seed {seed}", "error", message)
         for (engine, seed), message in comparison.failures.items()
     ]
-    _suite(root, "runs", finished + failed)
-    _suite(
+    suite(root, "runs", finished + failed)
+    suite(
         root,
         "gates",
         [
@@ -48,7 +48,7 @@ def junit_xml(comparison: Comparison) -> bytes:
             for gate in run.manifest["gates"]
         ],
     )
-    _suite(
+    suite(
         root,
         "checks",
         [
@@ -61,14 +61,29 @@ def junit_xml(comparison: Comparison) -> bytes:
             for result in comparison.results
         ],
     )
+    if comparison.horizon:
+        rows = horizon_tables.rows(comparison.horizon)
+        suite(
+            root,
+            "particle by particle",
+            [
+                (row.engine, "native scheme of its name", ENDS.get(row.outcome), row.remark)
+                for row in rows
+                if row.outcome in ENDS
+            ],
+        )
+    return to_bytes(root)
+
+
+def to_bytes(root: ElementTree.Element) -> bytes:
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
 
 
-def _suite(root, name: str, cases: list[tuple[str, str, str | None, str]]) -> None:
+def suite(root, name: str, cases: list[tuple[str, str, str | None, str]]) -> None:
     """A suite of `cases`: (class, name, how it ends, message)."""
     ends = [end for _, _, end, _ in cases]
-    suite = ElementTree.SubElement(
+    element = ElementTree.SubElement(
         root,
         "testsuite",
         name=name,
@@ -79,7 +94,7 @@ def _suite(root, name: str, cases: list[tuple[str, str, str | None, str]]) -> No
     )
     for class_name, case_name, end, message in cases:
         test = ElementTree.SubElement(
-            suite,
+            element,
             "testcase",
             classname=f"{name}.{printable(class_name)}",
             name=printable(case_name),

@@ -6,6 +6,7 @@ import difflib
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
 import pandas as pd
 
 from crossdem.adapters.dataset import Dataset
@@ -32,7 +33,10 @@ class Quantity:
         return " ".join((self.function.__doc__ or "").split())
 
     def of(self, dataset: Dataset) -> float:
-        return self.function(dataset.resistance if self.of_table else dataset)
+        with np.errstate(
+            all="ignore"
+        ):  # where it has no value, such as a share of nothing, it is NaN
+            return self.function(dataset.resistance if self.of_table else dataset)
 
 
 QUANTITIES = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from importlib import metadata
 
+from . import horizon_tables
 from .comparison import Comparison
 from .quantities import QUANTITIES
 from .wording import explanation
@@ -35,7 +36,7 @@ PROVENANCE = (
 def record(comparison: Comparison) -> dict:
     """Everything but the series; numbers in SI, null where there is none. Of a ratio, differences are logarithms."""
     verdict = comparison.verdict
-    return _plain(
+    return plain(
         {
             "schema_version": SCHEMA_VERSION,
             "case": {
@@ -64,6 +65,7 @@ def record(comparison: Comparison) -> dict:
                 {"engine": engine, "seed": seed, "message": message}
                 for (engine, seed), message in comparison.failures.items()
             ],
+            "horizon": horizon_tables.record(comparison.horizon) if comparison.horizon else None,
             "libraries": libraries(),
         }
     )
@@ -94,12 +96,12 @@ def _check(result) -> dict:
     }
 
 
-def _plain(value):
+def plain(value):
     """What strict JSON can hold: no tuples, no NaN."""
     if isinstance(value, dict):
-        return {key: _plain(entry) for key, entry in value.items()}
+        return {key: plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(entry) for entry in value]
+        return [plain(entry) for entry in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value

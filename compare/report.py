@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import json
-import os
-import re
 from pathlib import Path
 
-import jinja2
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
-from . import beds, figures, tables
+from . import beds, figures, horizon_report, horizon_tables, tables
 from .colours import engine_styles
 from .comparison import Comparison
 from .junit import junit_xml
+from .pages import render, write_whole
 from .record import libraries, record
-from .wording import MINUS, printable
 
-TEMPLATES = Path(__file__).parent / "templates"
 WIDE_PX, NARROW_PX, PANEL_PX = (900, 400), (380, 320), (440, 320)
 FIELD_PX = (400, 460)
 
@@ -28,11 +24,11 @@ def write_report(comparison: Comparison, out_dir: Path) -> Path:
     out_dir.mkdir(parents=True, exist_ok=True)
     values = _values(comparison)
     text = json.dumps(record(comparison), indent=2, ensure_ascii=False, allow_nan=False)
-    _write(out_dir / "report.json", (text + "\n").encode())
-    _write(out_dir / "junit.xml", junit_xml(comparison))
-    _write(out_dir / "report.md", _render("report.md", values).encode())
+    write_whole(out_dir / "report.json", (text + "\n").encode())
+    write_whole(out_dir / "junit.xml", junit_xml(comparison))
+    write_whole(out_dir / "report.md", render("report.md", values).encode())
     values |= _pictures(comparison)
-    _write(out_dir / "report.html", _render("report.html", values).encode())
+    write_whole(out_dir / "report.html", render("report.html", values).encode())
     return out_dir / "report.html"
 
 
@@ -59,6 +55,7 @@ def _values(comparison: Comparison) -> dict:
             for engine in comparison.engines
             if comparison.of(engine)
         },
+        "horizon": horizon_tables.values(comparison.horizon) if comparison.horizon else None,
         "libraries": libraries(),
     }
 
@@ -99,7 +96,7 @@ def _pictures(comparison: Comparison) -> dict:
             )
             for engine, run in runs.items()
         },
-        "style": Markup((TEMPLATES / "report.css").read_text(encoding="utf-8")),
+        "horizon": horizon_report.page_values(comparison.horizon) if comparison.horizon else None,
     }
 
 
@@ -117,48 +114,3 @@ def _shared_seed(comparison: Comparison) -> int | None:
     """The first seed that every engine with results has, to show the same bed in all of them."""
     seeds = [{run.seed for run in runs} for e in comparison.engines if (runs := comparison.of(e))]
     return min(set.intersection(*seeds), default=None) if seeds else None
-
-
-def _render(name: str, values: dict) -> str:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(TEMPLATES),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        finalize=_printable,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {"cell": _cell, "glued": _glued, "shown": _shown}
-    return environment.get_template(name).render(values)
-
-
-def _printable(value: object) -> object:
-    return printable(value) if isinstance(value, str) and not isinstance(value, Markup) else value
-
-
-def _cell(text: object) -> Markup:
-    """Text for Markdown: one line, with none of HTML's or Markdown's own characters at work."""
-    line = " ".join(printable(str(text)).split())
-    for character in "\\`*_[]|~#":
-        line = line.replace(character, f"\\{character}")
-    return escape(line)
-
-
-def _glued(text: str) -> str:
-    """Numbers that do not break from their units, only at "to", "/" and before the scatter."""
-    return re.sub(r"(?<!to)(?<!/) (?!to\b|/|±)", "\N{NO-BREAK SPACE}", text)
-
-
-def _shown(value: object) -> str:
-    """A value of a manifest: numbers short, whatever else as it is."""
-    return f"{value:.3g}".replace("-", MINUS) if isinstance(value, float) else str(value)
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Replace `path` by `content`, whole or not at all."""
-    partial = path.with_name(f".{path.name}.partial")
-    with partial.open("wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    partial.replace(path)

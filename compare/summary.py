@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from . import tables, verdict
+from . import horizon_tables, tables, verdict
 from .comparison import Comparison
 from .wording import printable
 
@@ -39,6 +39,9 @@ def print_summary(
     console.print(table)
     for (engine, seed), message in comparison.failures.items():
         console.print(Text(printable(f"{engine}, seed {seed}: {message}"), style="magenta"))
+    if comparison.horizon:
+        console.print()
+        console.print(Text(printable(horizon_tables.sentence(comparison.horizon)), style="dim"))
     console.print()
     console.print(Text(result.word, style=f"bold {COLOURS[result.word]}"))
     console.print(Text(printable(result.sentence)))

@@ -9,7 +9,7 @@ from crossdem import ExitCode
 
 from . import checks
 from .checks import MOST_SEEDS, CheckResult
-from .wording import explanation, plural, signed_difference
+from .wording import explanation, listed, plural, signed_difference
 
 AGREES = "AGREES"
 CONSISTENT = "CONSISTENT"
@@ -46,10 +46,12 @@ def decide(
     results: Sequence[CheckResult],
     failures: dict[tuple[str, int], str],
     failed_gates: Sequence[str] = (),
+    strays: Sequence[str] = (),
 ) -> Verdict:
     """The verdict: a difference weighs more than an engine without result, and that more than an open question.
 
-    `failed_gates` are lines that name the run and the gate.
+    `failed_gates` are lines that name the run and the gate; `strays` name the engines that differ particle by particle
+    before the horizon, and when: that is no chance, and comes first.
 
     The smoke tier is a comparison of fewer seeds than a statement of equivalence needs: there, nothing outside the
     alarm band is as much as can be said, and it is called CONSISTENT, never AGREES.
@@ -59,7 +61,9 @@ def decide(
     needed = _most([result.seeds_needed for result in results])
     smoke = bool(results) and (needed is None or seeds < needed)
 
-    if checks.DIFFERS in outcomes:
+    if strays:
+        word, sentence, next_step = DIFFERS, *_strayed(strays)
+    elif checks.DIFFERS in outcomes:
         word, sentence, next_step = DIFFERS, *_differs(results)
     elif failures:
         word, sentence, next_step = ENGINE_FAILED, *_failed(failures)
@@ -84,6 +88,13 @@ def seeds_text(seeds_needed: int | None) -> str:
 
 def _most(needed: list[int | None]) -> int | None:
     return None if not needed or None in needed else max(needed)
+
+
+def _strayed(strays: Sequence[str]) -> tuple[str, str]:
+    return (
+        "; ".join(strays) + ".",
+        "A fault in law, integrator or geometry, not chaos: `crossdem check reference_cases/micro` shows in which.",
+    )
 
 
 def _differs(results) -> tuple[str, str]:
@@ -138,7 +149,7 @@ def _not_comparable(obstacle: str) -> tuple[str, str]:
 def _agrees(engines, results, seeds) -> tuple[str, str]:
     checked = len({result.check.quantity.name for result in results})
     sentence = (
-        f"{_names(engines)} agree: the 90 % interval of every difference in {plural(checked, 'quantity', 'quantities')} "
+        f"{listed(engines)} agree: the 90 % interval of every difference in {plural(checked, 'quantity', 'quantities')} "
         f"lies within its margin, from {plural(seeds, 'seed')}."
     )
     return sentence, "Vary the case (--set key=value) to see how far the agreement reaches."
@@ -147,7 +158,7 @@ def _agrees(engines, results, seeds) -> tuple[str, str]:
 def _consistent(engines, results, seeds, needed) -> tuple[str, str]:
     still_open = sum(result.outcome == checks.INCONCLUSIVE for result in results)
     sentence = (
-        f"{_names(engines)} show no alarming difference: every gate passed, and nothing lies outside the alarm band "
+        f"{listed(engines)} show no alarming difference: every gate passed, and nothing lies outside the alarm band "
         f"of {checks.ALARM_SCATTERS} seed-to-seed standard deviations. This is no statement of equivalence: "
         f"{still_open} of {plural(len(results), 'check')} are still open. It needs {seeds_text(needed)}, here "
         f"{'is' if seeds == 1 else 'are'} {seeds}."
@@ -169,7 +180,3 @@ def _unsettled(results, seeds) -> tuple[str, str]:
         sentence,
         "The differences are about as large as their margins: look at their cause, or run more seeds.",
     )
-
-
-def _names(engines: Sequence[str]) -> str:
-    return " and ".join([", ".join(engines[:-1]), engines[-1]]) if len(engines) > 1 else engines[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 
 from . import checks
 from .checks import Check, CheckResult
@@ -28,6 +29,11 @@ def plural(count: int, one: str, many: str | None = None) -> str:
     return f"{count} {one if count == 1 else many or one + 's'}"
 
 
+def listed(names: Sequence[str]) -> str:
+    """ "native, liggghts and yade"."""
+    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
+
+
 def number(value: float, digits: int = 3) -> str:
     """`value` to `digits` significant digits, without exponent where it can be; a dash for NaN."""
     if math.isnan(value):
@@ -35,6 +41,11 @@ def number(value: float, digits: int = 3) -> str:
     text = f"{value:#.{digits}g}"
     text = f"{float(text):.0f}" if "e+0" in text and abs(value) < 1e6 else text.rstrip(".")
     return text.replace("-", MINUS)
+
+
+def metres(value_m: float) -> str:
+    """A length far below any other: "2.4e−15 m"."""
+    return re.sub("e-0?", f"e{MINUS}", f"{value_m:.2g} m")
 
 
 def quantity_value(quantity: Quantity, value: float, digits: int = 3) -> str:

@@ -41,7 +41,10 @@ def test_version():
     assert crossdem("--version").stdout.split() == ["crossdem,", "version", __version__]
 
 
-@pytest.mark.parametrize("command", ["check", "run", "generate", "resolve", "compare", "doctor"])
+@pytest.mark.parametrize(
+    "command",
+    ["check", "run", "generate", "resolve", "compare", "explain", "horizon", "stability", "doctor"],
+)
 def test_every_command_explains_itself(command):
     ended = crossdem(command, "--help")
     assert ended.returncode == 0 and "Usage: crossdem " + command in ended.stdout

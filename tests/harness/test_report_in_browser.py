@@ -6,9 +6,13 @@ import subprocess
 
 import matplotlib.image
 import pytest
+import synthetic
+import test_attribution
+import test_horizon
+import test_stability
 from test_report import HOSTILE, compared
 
-from crossdem.compare import report
+from crossdem.compare import explain_report, horizon_report, report, stability_report
 
 WIDTHS_PX = (1280, 400)
 
@@ -50,6 +54,27 @@ def test_the_browser_complains_of_nothing_and_shows_the_title_as_text(browser, p
     assert "&lt;script&gt;alert('1')&lt;/script&gt;" in shown and "土のモデル" in shown
     assert "<script" not in shown
     assert shown.index("CONSISTENT") < shown.index("Resistance against depth")
+
+
+def _explanation(folder):
+    return explain_report.write_explanation(test_attribution.attributed(HOSTILE), folder)
+
+
+def _horizon(folder):
+    found = test_horizon.found(test_horizon.NATIVE, test_horizon.STRAYING)
+    return horizon_report.write_horizon(synthetic.case(title=HOSTILE), found, folder)
+
+
+def _stability(folder):
+    outcomes = [test_stability.QUIET, test_stability.BLOWN_UP]
+    return stability_report.write_stability(test_stability.found(outcomes, HOSTILE), folder)
+
+
+@pytest.mark.parametrize("write", [_explanation, _horizon, _stability])
+def test_the_other_pages_are_complained_of_no_more(browser, tmp_path, write):
+    shown, complaints = browser(write(tmp_path).as_uri(), "--dump-dom")
+    assert complaints == []
+    assert "&lt;script&gt;alert('1')&lt;/script&gt;" in shown and "<script" not in shown
 
 
 def test_the_page_may_not_load_or_run_anything(browser, page, tmp_path):

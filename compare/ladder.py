@@ -1,0 +1,103 @@
+"""The ladder: every rung of every case in a folder, and one verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from crossdem import ExitCode
+
+from . import rungs
+from .rungs import Rung
+from .wording import plural
+
+AGREES = "AGREES"
+DIFFERS = "DIFFERS"
+ENGINE_FAILED = "ENGINE FAILED OR MISSING"
+INCONCLUSIVE = "INCONCLUSIVE"
+
+EXIT_CODES = {
+    AGREES: ExitCode.AGREES,
+    DIFFERS: ExitCode.DIFFERS,
+    ENGINE_FAILED: ExitCode.ENGINE_FAILED,
+    INCONCLUSIVE: ExitCode.INCONCLUSIVE,
+}
+
+
+@dataclass(frozen=True)
+class LadderCase:
+    """A case of the ladder, as its page shows it."""
+
+    name: str
+    title: str
+    hash: str
+    steps_s: dict[str, float]  # of each engine
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Everything the ladder's report says, computed."""
+
+    name: str
+    cases: tuple[LadderCase, ...]
+    engines: tuple[str, ...]
+    versions: dict[str, str]  # of the engines with results
+    rungs: tuple[Rung, ...]
+    seconds: float  # wall time
+
+    def of(self, case: str, engine: str) -> list[Rung]:
+        return [rung for rung in self.rungs if (rung.case, rung.engine) == (case, engine)]
+
+    @property
+    def word(self) -> str:
+        outcomes = {rung.outcome for rung in self.rungs}
+        for outcome, word in (
+            (rungs.DIFFERS, DIFFERS),
+            (rungs.NO_RESULT, ENGINE_FAILED),
+            (rungs.NOT_COMPARABLE, INCONCLUSIVE),
+        ):
+            if outcome in outcomes:
+                return word
+        return AGREES if self.rungs else INCONCLUSIVE
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return EXIT_CODES[self.word]
+
+    @property
+    def sentence(self) -> str:
+        """Names case, engine and rung of the lowest rung that does not hold: an engine's law before its limit."""
+        wanted = {
+            DIFFERS: rungs.DIFFERS,
+            ENGINE_FAILED: rungs.NO_RESULT,
+            INCONCLUSIVE: rungs.NOT_COMPARABLE,
+        }.get(self.word)
+        found = [rung for rung in self.rungs if rung.outcome == wanted]
+        if not self.rungs:
+            return "There is nothing to compare: no case has a twin or an answer."
+        if not found:
+            return (
+                f"{_names(self.engines)}: every one of {plural(len(self.rungs), 'rung')} on "
+                f"{plural(len(self.cases), 'case')} holds."
+            )
+        first = found[0]
+        return (
+            f"{first.case}, {first.engine}, {first.name}: {first.sentence.rstrip('.')}"
+            + (f" (and {plural(len(found) - 1, 'more rung')})" if len(found) > 1 else "")
+            + "."
+        )
+
+    @property
+    def next_step(self) -> str:
+        return {
+            AGREES: "Above it, `crossdem check CASE` compares whole beds.",
+            DIFFERS: "See the ladder's page for the rungs: a twin that differs shows a wrong number or operation, a "
+            "closed form alone a wrong law.",
+            ENGINE_FAILED: "Read the log that it names; `crossdem doctor` shows which engines are here and what to "
+            "install.",
+            INCONCLUSIVE: "See the ladder's page for what could not be compared, and why.",
+        }[self.word]
+
+
+def _names(engines: Sequence[str]) -> str:
+    return " and ".join([", ".join(engines[:-1]), engines[-1]]) if len(engines) > 1 else engines[0]
