@@ -90,6 +90,11 @@ def varied(case: Case, overrides: Sequence[str]) -> Case:
     return _resolve(values, case.file_name)
 
 
+def varied_table(case: Case, **tables: dict) -> Case:
+    """`case` with whole tables of other values, what they leave out at its default. Raises CaseError, SolverError."""
+    return _resolve(copy.deepcopy(case.resolved) | tables, case.file_name)
+
+
 def _apply(tables: dict, overrides: Sequence[str]) -> list[str]:
     """Sets each value in place; a fault line for each that cannot be."""
     faults = []

@@ -9,6 +9,7 @@ import subprocess
 from functools import lru_cache
 from io import StringIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pandas as pd
@@ -41,6 +42,8 @@ NO_MPI_DAEMON = {
     "OMPI_MCA_ess_singleton_isolated": "1",
     "OMPI_MCA_btl": "self",
     "OMPI_MCA_pml": "ob1",
+    # Relative to the run's folder: where they share one, the end of a process may take the start of another's away.
+    "OMPI_MCA_orte_tmpdir_base": OUTPUT,
 }
 ERROR_LINE = re.compile(r"^ERROR[^:]*: (.+?)(?: \([\w./]+:\d+\))?$", re.MULTILINE)
 
@@ -148,12 +151,14 @@ class LiggghtsAveraged(Liggghts):
 @lru_cache
 def _version(executable: str) -> str:
     try:
-        asked = subprocess.run(
-            [executable, "-log", "none", "-h"],
-            env=os.environ | NO_MPI_DAEMON,
-            capture_output=True,
-            timeout=60,
-        )
+        with TemporaryDirectory() as folder:
+            asked = subprocess.run(
+                [executable, "-log", "none", "-h"],
+                env=os.environ | NO_MPI_DAEMON | {"OMPI_MCA_orte_tmpdir_base": folder},
+                cwd=folder,
+                capture_output=True,
+                timeout=60,
+            )
     except (OSError, subprocess.TimeoutExpired) as error:
         raise EngineNotFound(f"{executable} does not say its version: {error}") from error
     said = asked.stdout.decode(errors="replace")

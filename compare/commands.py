@@ -24,16 +24,22 @@ from .summary import print_summary
 
 def check(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
     if case_file.is_dir():
-        from .ladder_command import check_folder  # here: its solvers of equations take as long
-
-        return check_folder(case_file, engines, out, overrides, jobs)
+        return _check_ladder(case_file, engines, out, overrides, jobs)
     case = _load(case_file, overrides)
+    if case.resolved["particle"]:  # no bed, of which there could be seeds
+        return _check_ladder(case_file, engines, out, overrides, jobs)
     with _workspace(case, overrides, out) as workspace:
         runs = run_engines(case, engines, seeds, workspace, jobs, Console())
         able = [engine for engine in engines if (engine, 1) not in runs.failures]
         found = find_horizon(case, able, 1, workspace, jobs, Console()) if able else None
     datasets = [Dataset.read(folder) for folder in runs.folders]
     return _report(case, datasets, runs, workspace, found)
+
+
+def _check_ladder(*arguments) -> ExitCode:
+    from .ladder_command import check_ladder  # here: its solvers of equations take as long
+
+    return check_ladder(*arguments)
 
 
 def run(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:

@@ -1,4 +1,4 @@
-"""`crossdem check FOLDER`: the ladder of every case in it."""
+"""`crossdem check FOLDER`: the ladder of every case in it; or of one case whose particles are placed by hand."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from .ladder_report import print_ladder, write_ladder
 from .ladder_runs import Plan, climb, load_plans
 
 
-def check_folder(
-    folder: Path, engines: Sequence[str], out: Path | None, overrides: Sequence[str], jobs: int
+def check_ladder(
+    where: Path, engines: Sequence[str], out: Path | None, overrides: Sequence[str], jobs: int
 ) -> ExitCode:
     """Raises CaseError with the faults of all cases, before anything is written."""
     console = Console()
-    plans = load_plans(folder, engines, overrides, jobs)
+    plans = load_plans(where, engines, overrides, jobs)
     for warning in dict.fromkeys(line for plan in plans for line in plan.case.warnings):
         console.print(warning, markup=False, soft_wrap=True)
-    name = folder.resolve().name
+    name = where.resolve().stem
     workspace = Workspace(out or Path("results") / f"{name}{_variant(plans, overrides)}")
     try:
         ladder = climb(name, plans, engines, workspace, jobs, console)

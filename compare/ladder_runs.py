@@ -33,17 +33,11 @@ from .rungs import (
     twin_rung,
     without_result,
 )
+from .twin_schemes import TWIN_SCHEMES, native_twin
 
 NATIVE = "native"
 TRANSCRIPTION = "the paper's scheme in Python"
 TRANSCRIBED = "paper"  # the scheme that TRANSCRIPTION knows
-# Engines with a native scheme that does what they do, step by step.
-TWIN_SCHEMES = {
-    "liggghts": "liggghts",
-    "yade": "yade",
-    "liggghts-averaged": "liggghts_averaged",
-    "yade-averaged": "yade_averaged",
-}
 SEED = 1  # of a packing that is made, where the particles are not given
 
 
@@ -68,12 +62,15 @@ class Plan:
 
 
 def load_plans(
-    folder: Path, engines: Sequence[str], overrides: Sequence[str], jobs: int
+    where: Path, engines: Sequence[str], overrides: Sequence[str], jobs: int
 ) -> list[Plan]:
-    """Every case of `folder`, with its variants. Raises CaseError with the faults of all of them."""
-    paths = sorted(folder.glob("*.toml"))
+    """Every case of the folder `where`, or the one case that it is, with its variants.
+
+    Raises CaseError with the faults of all of them.
+    """
+    paths = sorted(where.glob("*.toml")) if where.is_dir() else [where]
     if not paths:
-        raise CaseError([f"{folder}: holds no case (*.toml)"])
+        raise CaseError([f"{where}: holds no case (*.toml)"])
 
     def load(path: Path) -> Plan | CaseError:
         try:
@@ -147,17 +144,14 @@ def _plan(path: Path, engines: Sequence[str], overrides: tuple[str, ...]) -> Pla
             for engine, settings in case.resolved["engines"].items()
         ]
         levels.append(load_case(path, [*overrides, *steps]))
-    twins = {
-        engine: _twin(path, overrides, case, engine) for engine in engines if engine in TWIN_SCHEMES
-    }
+    twins = {engine: _twin(case, engine) for engine in engines if engine in TWIN_SCHEMES}
     return Plan(path, overrides, case, levels, twins)
 
 
-def _twin(path: Path, overrides: tuple[str, ...], case: Case, engine: str) -> Case | str:
-    """The same case in the native scheme that does what `engine` does, at its time step."""
-    changes = [f"scheme.name={TWIN_SCHEMES[engine]}", f"time.step_s={case.step_s(engine)!r}"]
+def _twin(case: Case, engine: str) -> Case | str:
+    """The same case for the native solver in the engine's place, or why there is none."""
     try:
-        return load_case(path, [*overrides, *changes])
+        return native_twin(case, engine)
     except CaseError as error:
         return f"no native twin: {'; '.join(error.faults)}"
 

@@ -112,7 +112,7 @@ void time_faults(const Case& c, const Fault& fault) {
 
 void scheme_faults(const SchemeChoice& scheme, const Fault& fault) {
   Readings others = scheme.readings;
-  if (scheme.name == "liggghts") others.attraction = {};  // LIGGGHTS knows both
+  if (scheme.name.starts_with("liggghts")) others.attraction = {};  // LIGGGHTS knows both
   if (scheme.name != "paper" && others != Readings{})
     fault("scheme.name",
           "the scheme \"" + scheme.name + "\" has readings of its own: leave those here at their defaults");

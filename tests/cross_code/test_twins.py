@@ -14,13 +14,8 @@ from crossdem.adapters.case import load_case, varied
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run import RunRequest, run_all
+from crossdem.compare.twin_schemes import TWIN_SCHEMES, native_twin
 
-SCHEMES = {
-    "liggghts": "liggghts",
-    "yade": "yade",
-    "liggghts-averaged": "liggghts_averaged",
-    "yade-averaged": "yade_averaged",
-}
 WIDTH_M = 0.02
 CLOSE = ("time.frame_interval_s=0.001",)
 FREE = (*CLOSE, "gravity_m_s2=0.0", "container.width_m=0.04")

@@ -147,8 +147,8 @@ def test_a_file_that_cannot_be_read(refused):
     assert "/proc/self/mem: cannot be read: Input/output error" in refused("/proc/self/mem")
 
 
-def test_a_folder_in_place_of_a_file(refused, tmp_path):
-    assert "is a folder, not a case file" in refused(tmp_path)
+def test_a_folder_without_a_case(refused, tmp_path):
+    assert "holds no case (*.toml)" in refused(tmp_path)
 
 
 def test_a_device_in_place_of_a_file(refused):

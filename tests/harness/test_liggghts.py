@@ -132,8 +132,8 @@ def test_few_discs_lie_in_one_bin_and_many_in_bins_of_liggghts_own(case, packing
 def test_the_bar_starts_at_a_step_of_samples_and_frames_whatever_the_rest(
     packing, tmp_path, rest_s
 ):
-    averaged = "engines.yade-averaged.step_s=5e-5"
-    case = small_case(f"time.rest_s={rest_s}", "time.step_s=5e-5", averaged)
+    averaged = [f"engines.{code}-averaged.step_s=5e-5" for code in ("liggghts", "yade")]
+    case = small_case(f"time.rest_s={rest_s}", "time.step_s=5e-5", *averaged)
     found = {
         name: int(text)
         for name, text in numbers(case, packing, tmp_path / "run").items()
