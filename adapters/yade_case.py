@@ -10,9 +10,12 @@ Writes output/samples.csv   one line per sample, the rest included; steps are co
 YADE is imported as a module: its launcher opens network ports. SI units; y is up.
 """
 
+import atexit
 import csv
 import json
 import math
+import os
+import shutil
 import sys
 from glob import glob
 
@@ -43,6 +46,9 @@ from yade.wrapper import (  # noqa: E402
 FEW = 30  # discs, of which every pair can be looked at in every step
 
 [engine_name] = sys.argv[1:]  # yade or yade-averaged
+
+# YADE makes itself a folder for temporary files, which only its launcher would clear away.
+atexit.register(shutil.rmtree, os.path.dirname(O.tmpFilename()), ignore_errors=True)
 
 with open("inputs/case.json", encoding="utf-8") as file:
     case = json.load(file)

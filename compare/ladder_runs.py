@@ -225,7 +225,10 @@ class _Runs:
     def _against_transcription(self) -> list[Rung]:
         if missing := self._missing(TWIN, TRANSCRIPTION, [0]):
             return [missing]
-        motion, forces = self.plan.reference.result()
+        try:
+            motion, forces = self.plan.reference.result()
+        except ArithmeticError as error:  # such as a centre that came to lie within the bar
+            return [self._without(TWIN, TRANSCRIPTION, f"{TRANSCRIPTION} came to an end: {error}")]
         return [twin_rung(self.case, self.engine, TRANSCRIPTION, self._dataset(0), motion, forces)]
 
     def _answers(self) -> list[Rung]:

@@ -10,7 +10,7 @@ import pytest
 from few_particles import Disc, few_particles, heap, top_of
 from small_case import REFERENCE_CASE
 
-from crossdem.adapters.case import load_case, varied
+from crossdem.adapters.case import load_case
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run import RunRequest, run_all
@@ -76,18 +76,17 @@ LIMITS_M = {
 }
 
 
-@pytest.fixture(params=list(SCHEMES))
+@pytest.fixture(params=list(TWIN_SCHEMES))
 def engine_name(request, required):
     return required(request.param).name
 
 
 def twins(case, engine_name, folder):
-    """The engine's run, and the native one of the scheme of its name at its time step."""
-    scheme = [f"scheme.name={SCHEMES[engine_name]}", f"time.step_s={case.step_s(engine_name)!r}"]
+    """The engine's run, and that of its native twin."""
     packing = make_packing(case, 1, folder / "packing")
     requests = [
         RunRequest(case, packing, engine_name),
-        RunRequest(varied(case, scheme), packing, "native"),
+        RunRequest(native_twin(case, engine_name), packing, "native"),
     ]
     results = run_all(requests, folder / "out", 1)
     assert [result.failure for result in results] == [None, None]
