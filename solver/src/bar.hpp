@@ -34,9 +34,9 @@ class Bar {
   [[nodiscard]] const Vector2& displacement() const { return displacement_; }  // [m], of the last step
   [[nodiscard]] double travel() const { return start_ - tip_; }                // [m]
 
-  /// Centre inside the rectangle: the particle went through a face.
+  /// Centre inside the rectangle or on its edge, where no direction leads out: the particle went through a face.
   [[nodiscard]] bool contains(const Vector2& centre) const {
-    return centre.x() > left() && centre.x() < right() && centre.y() > tip_ && centre.y() < tip_ + geometry_.length;
+    return centre.x() >= left() && centre.x() <= right() && centre.y() >= tip_ && centre.y() <= tip_ + geometry_.length;
   }
 
   /// Contacts at the bottom face and the corners belong to the tip, those at the sides to the shaft.

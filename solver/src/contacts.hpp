@@ -27,6 +27,13 @@ struct SurfaceContact {
   [[nodiscard]] ParticlePair key() const { return {i, static_cast<std::uint32_t>(surface)}; }
 };
 
+/// [m] Neighbours within a fifth of the smallest diameter are listed: wide enough that lists last hundreds of steps in
+/// a bed that creeps, narrow enough that few pairs are looked at in vain.
+inline double list_skin(const Particles& particles) {
+  constexpr double share_of_diameter = 0.2;
+  return share_of_diameter * 2 * *std::min_element(particles.radius.begin(), particles.radius.end());
+}
+
 /// Whose memory a contact is: one for both partners, or (readings "in turn") each particle its own.
 enum class MemoryOwner { pair, particle };
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <sstream>
 
 #include "case_schema.hpp"
+#include "crossdem/packing.hpp"
 
 namespace crossdem {
 namespace {
@@ -76,10 +78,29 @@ void placed_faults(const Case& c, const Fault& fault) {
   if (c.particles.count != mix.count || c.particles.diameters != mix.diameters ||
       c.particles.number_shares != mix.number_shares)
     fault("particles", "count, diameters_m and number_shares follow from the [[particle]] tables: leave them out");
+  std::vector<Vector2> places;
+  std::vector<double> radii;
+  std::map<std::pair<double, double>, std::size_t> first_at;
   for (std::size_t k = 0; k < c.placed.size(); ++k) {
     const PlacedParticle& particle = c.placed[k];
-    if (particle.x < 0.0 || particle.x > c.container.width || particle.y < 0.0)
-      fault("particle[" + std::to_string(k) + "]", "its centre is outside the container");
+    places.emplace_back(particle.x, particle.y);
+    radii.push_back(particle.radius);
+    const std::string key = "particle[" + std::to_string(k) + "]";
+    if (particle.x <= 0.0 || particle.x >= c.container.width || particle.y <= 0.0)
+      fault(key, "its centre is not inside the container");
+    const auto [same, is_new] = first_at.try_emplace({particle.x, particle.y}, k);
+    if (!is_new) fault(key, "its centre is that of particle[" + std::to_string(same->second) + "]");
+  }
+  if (!c.bar) return;
+  const double tip = c.bar->tip > 0.0 ? c.bar->tip : touching_height(*c.bar, radii, places);
+  if (tip == 0.0) return fault("bar.tip_m", "no particle is under the bar for it to touch: say where it starts");
+  try {
+    check_bar_is_clear(c, tip, places);
+    check_bar_stays_above_floor(c, tip);
+  } catch (const CaseError& error) {
+    const std::string& said = error.faults().front();
+    const std::size_t colon = said.find(": ");
+    fault(said.substr(0, colon), said.substr(colon + 2));
   }
 }
 
@@ -108,6 +129,20 @@ void time_faults(const Case& c, const Fault& fault) {
   check_interval("time.penetration_s", c.time.penetration, c.time.sample_interval, "time.sample_interval_s");
   check_interval("time.penetration_s", c.time.penetration, c.time.frame_interval, "time.frame_interval_s");
   if (c.placed.empty() && c.packing.step != c.time.step) check_limit("packing.step_s", c.packing.step);
+}
+
+/// YADE puts particle and wall in series, in which 0 stands for a rigid partner.
+void series_faults(const Case& c, const Fault& fault) {
+  const ContactParameters& pair = c.particle_particle;
+  const ContactParameters& wall = c.particle_wall;
+  const auto check = [&](const char* key, double of_pair, double of_wall) {
+    if (of_wall == 0.0 && of_pair != 0.0)
+      fault(std::string("contact.particle_wall.") + key,
+            "the scheme \"" + c.scheme.name + "\" has no 0 here beside " + short_text(of_pair) + " of the particles");
+  };
+  check("shear_stiffness_N_m", pair.shear_stiffness, wall.shear_stiffness);
+  check("normal_damping_N_s_m", pair.normal_damping, wall.normal_damping);
+  check("shear_damping_N_s_m", pair.shear_damping, wall.shear_damping);
 }
 
 void scheme_faults(const SchemeChoice& scheme, const Fault& fault) {
@@ -142,6 +177,7 @@ std::vector<std::string> contradictions(const Case& c) {
     placed_faults(c, fault);
   time_faults(c, fault);
   scheme_faults(c.scheme, fault);
+  if (c.scheme.name.starts_with("yade")) series_faults(c, fault);
   return faults;
 }
 

@@ -1,4 +1,6 @@
-// crossdem-solver: resolve a case, make a packing, run. Exit 0 done, 1 the run went wrong, 2 bad input.
+// crossdem-solver: resolve a case, make a packing, run.
+// Exit 0 done, 1 something went wrong (such as a full disk), 2 bad input, 3 the motion is beyond reason: it is not
+// finite, left the box, exploded or does not settle.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -13,6 +15,7 @@ namespace {
 
 constexpr int exit_failed = 1;
 constexpr int exit_bad_input = 2;
+constexpr int exit_beyond_reason = 3;
 constexpr std::uintmax_t most_case_bytes = 1 << 20;
 
 std::string read_case_text(const std::string& file) {
@@ -108,12 +111,18 @@ int command_line(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const auto tell = [](const char* fault) {
+    std::fputs((std::string("crossdem-solver: ") + fault + "\n").c_str(), stderr);
+  };
   try {
     return command_line(argc, argv);
+  } catch (const crossdem::SimulationError& error) {
+    tell(error.what());
+    return exit_beyond_reason;
   } catch (const std::exception& error) {
-    std::fputs((std::string("crossdem-solver: ") + error.what() + "\n").c_str(), stderr);
+    tell(error.what());
   } catch (...) {
-    std::fputs("crossdem-solver: unknown fault\n", stderr);
+    tell("unknown fault");
   }
   return exit_failed;
 }

@@ -82,13 +82,6 @@ double height_of(const Packing& packing) {
   return height;
 }
 
-/// Beds settle by the paper's scheme with the readings of the case: one with a conventional integrator would not come
-/// to rest at the paper's time step, and those of the other schemes are best compared on the paper's beds.
-SchemeChoice settling_scheme(const SchemeChoice& choice) {
-  const bool settles = choice.name == "paper" && choice.readings.integrator == Integration::averaged_displacement;
-  return settles ? choice : SchemeChoice{.name = "paper", .readings = {}};
-}
-
 Packing placed_by_hand(const Case& setup, std::uint64_t seed) {
   Packing packing;
   packing.seed = seed;
@@ -108,17 +101,18 @@ Packing placed_by_hand(const Case& setup, std::uint64_t seed) {
 
 }  // namespace
 
+SchemeChoice settling_scheme(const SchemeChoice& choice) {
+  const bool settles = choice.name == "paper" && choice.readings.integrator == Integration::averaged_displacement;
+  return settles ? choice : SchemeChoice{.name = "paper", .readings = {}};
+}
+
 Packing make_packing(const Case& setup, std::uint64_t seed) {
   if (!setup.placed.empty()) return placed_by_hand(setup, seed);
   Case settling = setup;
   settling.time.step = setup.packing.step;
   settling.particle_wall.friction = setup.packing.wall_friction;
   settling.scheme = settling_scheme(setup.scheme);
-  // The lattice is higher than the container; what falls from it may be faster than the container's height explains.
-  const Particles lattice = jittered_lattice(setup, seed);
-  settling.container.height = std::max(setup.container.height, 2 * lattice.position.back().y());
-
-  Simulation simulation(settling, lattice, std::nullopt);
+  Simulation simulation(settling, jittered_lattice(setup, seed), std::nullopt);
   const auto elapsed = [&] { return static_cast<double>(simulation.steps()) * settling.time.step; };
   double energy = 0.0;
   do {

@@ -1,6 +1,5 @@
 #include "scheme.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "schemes/liggghts.hpp"
@@ -8,11 +7,6 @@
 #include "schemes/yade.hpp"
 
 namespace crossdem {
-
-double list_skin(const Particles& particles) {
-  constexpr double share_of_diameter = 0.2;
-  return share_of_diameter * 2 * *std::min_element(particles.radius.begin(), particles.radius.end());
-}
 
 std::unique_ptr<Stepper> make_stepper(const Case& setup, World& world) {
   const SchemeChoice& choice = setup.scheme;

@@ -12,7 +12,7 @@ namespace crossdem {
 namespace {
 
 /// Kinetic energy beyond this multiple of what motion and springs held at the start, and of what weight can give over
-/// the container's height, is no physics.
+/// the height of container and particles, is no physics.
 constexpr double explosion_factor = 10.0;
 /// The same for the bar's push: no particle gets this many times faster than the bar.
 constexpr double explosion_speed = 100.0;
@@ -21,6 +21,12 @@ double total_mass(const Particles& particles) {
   double sum = 0.0;
   for (const double mass : particles.mass) sum += mass;
   return sum;
+}
+
+double highest(const Particles& particles) {
+  double height = 0.0;
+  for (const Vector2& position : particles.position) height = std::max(height, position.y());
+  return height;
 }
 
 double moment_of_mass(const Particles& particles) {
@@ -58,7 +64,8 @@ Simulation::Simulation(const Case& setup, Particles particles, std::optional<dou
   w.momentum_at_start = momentum(w.particles);
   w.spring_at_start = state_->stepper->spring_energy(w);
   const double bar_speed = bar_tip ? explosion_speed * setup.bar->speed : 0.0;
-  const double weight_energy = total_mass(w.particles) * w.gravity * setup.container.height;
+  const double height = std::max(setup.container.height, highest(w.particles));
+  const double weight_energy = total_mass(w.particles) * w.gravity * height;
   w.kinetic_limit = explosion_factor * (w.kinetic_at_start + w.spring_at_start + weight_energy) +
                     0.5 * total_mass(w.particles) * bar_speed * bar_speed;
   w.moment_of_mass_at_start = moment_of_mass(w.particles);
@@ -109,9 +116,9 @@ EnergyLedger Simulation::energy_ledger() const {
 
 std::size_t Simulation::contacts() const { return close_pairs(state_->world.particles, 0.0).size(); }
 
-void World::enter_impulses(double time, double share) {
+void World::enter_impulses(double share) {
   const auto impulse = [&](Surface surface) -> Vector2 {
-    return totals.force[static_cast<std::size_t>(surface)] * time;
+    return totals.force[static_cast<std::size_t>(surface)] * (share * dt);
   };
   momentum_ledger.left_wall += impulse(Surface::left);
   momentum_ledger.right_wall += impulse(Surface::right);

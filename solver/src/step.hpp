@@ -57,13 +57,13 @@ class Step {
  private:
   struct PairForce {
     ContactForce force;
-    Vector2 normal;      // from i to j
-    double arm_i = 0.0;  // [m], of the moment
+    Vector2 normal = Vector2::Zero();  // from i to j
+    double arm_i = 0.0;                // [m], of the moment
     double arm_j = 0.0;
   };
 
   void begin() {
-    if (scheme_.integrator.kicks_twice()) enter_impulses(0.5);
+    if (scheme_.integrator.kicks_twice()) w_.enter_impulses(0.5);
     scheme_.integrator.begin(p_, w_.loads, w_.gravity, w_.dt);
     if (w_.surfaces.bar) w_.surfaces.bar->advance(w_.dt);
     if (contacts_.outdated(p_, w_.surfaces)) {
@@ -113,11 +113,7 @@ class Step {
     const std::uint32_t i = contact.i;
     const Vector2& centre = p_.position[i];
     const NearestPoint nearest = w_.surfaces.nearest_point(contact.surface, centre);
-    const bool on_bar = contact.surface == Surface::bar;
-    const bool meets =
-        nearest.distance < p_.radius[i] &&
-        (scheme_.law.readings.bar_corner == BarCorner::nearest_point || !on_bar || w_.surfaces.bar->faces(centre));
-    if (!meets) {
+    if (!w_.surfaces.touch(contact.surface, nearest, centre, p_.radius[i], scheme_.law.readings.bar_corner)) {
       contact.memory = {};
       return;
     }
@@ -148,12 +144,9 @@ class Step {
   }
 
   void end() {
-    enter_impulses(scheme_.integrator.kicks_twice() ? 0.5 : 1.0);
+    w_.enter_impulses(scheme_.integrator.kicks_twice() ? 0.5 : 1.0);
     ++w_.steps;
   }
-
-  /// `share` of the step: how long the latest loads act.
-  void enter_impulses(double share) { w_.enter_impulses(share * w_.dt, share); }
 
   World& w_;
   Particles& p_;

@@ -32,6 +32,14 @@ struct Surfaces {
     return bar->nearest_point(centre);
   }
 
+  /// Whether a disc touches the surface whose `nearest` point it is; by the reading "faces only" not at the bar's
+  /// corner.
+  [[nodiscard]] bool touch(Surface surface, const NearestPoint& nearest, const Vector2& centre, double radius,
+                           BarCorner corner) const {
+    return nearest.distance < radius &&
+           (corner == BarCorner::nearest_point || surface != Surface::bar || bar->faces(centre));
+  }
+
   /// [m], of the last step.
   [[nodiscard]] Vector2 displacement(Surface surface) const {
     return surface == Surface::bar ? bar->displacement() : Vector2::Zero();

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "contradictions.hpp"
+#include "crossdem/packing.hpp"
 
 namespace crossdem {
 namespace {
@@ -13,36 +14,42 @@ double smallest_mass(const Case& c) {
   return c.disc_mass(*std::min_element(c.particles.diameters.begin(), c.particles.diameters.end()) / 2);
 }
 
+struct Bound {
+  double gain;  // of a pure dashpot, beyond which it grows
+  const char* integrator;
+};
+constexpr Bound averaged{averaged_displacement_gain, "the averaged displacement"};
+constexpr Bound conventional{conventional_gain, "a conventional integrator"};
+
+/// The averaged displacement gains its stability from what the dashpots see.
+Bound bound_of(const SchemeChoice& scheme) {
+  if (scheme.name != "paper") return scheme.name.ends_with("_averaged") ? averaged : conventional;
+  if (scheme.readings.integrator != Integration::averaged_displacement) return conventional;
+  if (scheme.readings.dashpot_velocity == DashpotVelocity::averaged_displacement) return averaged;
+  return {conventional_gain, "the averaged displacement with true velocities"};
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Case& resolved) {
   std::vector<std::string> found;
-  const auto compare = [&](const std::string& key, double step, double gain, const char* integrator) {
-    const double limit = packed_bed_time_step(resolved, gain);
+  if (!resolved.placed.empty()) return found;  // no bed
+  const auto compare = [&](const std::string& key, double step, const Bound& bound) {
+    const double limit = packed_bed_time_step(resolved, bound.gain);
     if (step > limit) {
-      found.push_back(key + " = " + short_text(step) + " s is above the packed-bed limit of " + integrator + ", " +
-                      short_text(limit) + " s: expect a bed that does not rest");
+      found.push_back(key + " = " + short_text(step) + " s is above the packed-bed limit of " + bound.integrator +
+                      ", " + short_text(limit) + " s: expect a bed that does not rest");
     }
   };
-  // The averaged displacement gains its stability from what the dashpots see.
-  const Readings& readings = resolved.scheme.readings;
-  const std::string& name = resolved.scheme.name;
-  const bool averaged =
-      name.ends_with("_averaged") || (name == "paper" && readings.integrator == Integration::averaged_displacement);
-  const bool filtered = averaged && readings.dashpot_velocity == DashpotVelocity::averaged_displacement;
-  const double gain = filtered ? averaged_displacement_gain : conventional_gain;
-  const char* scheme = filtered   ? "the averaged displacement"
-                       : averaged ? "the averaged displacement with true velocities"
-                                  : "a conventional integrator";
-  if (!resolved.placed.empty()) return found;  // no bed
-  compare("time.step_s", resolved.time.step, gain, scheme);
-  if (resolved.packing.step != resolved.time.step) compare("packing.step_s", resolved.packing.step, gain, scheme);
+  const Bound own = bound_of(resolved.scheme);
+  compare("time.step_s", resolved.time.step, own);
+  const Bound settling = bound_of(settling_scheme(resolved.scheme));
+  if (resolved.packing.step != resolved.time.step || settling.gain != own.gain)
+    compare("packing.step_s", resolved.packing.step, settling);
   for (const auto& [engine, settings] : resolved.engines) {
-    const bool is_averaged = engine.ends_with("-averaged");
-    if (is_averaged && filtered && settings.step == resolved.time.step) continue;  // said above
-    compare("engines." + engine + ".step_s", settings.step,
-            is_averaged ? averaged_displacement_gain : conventional_gain,
-            is_averaged ? "the averaged displacement" : "a conventional integrator");
+    const Bound bound = engine.ends_with("-averaged") ? averaged : conventional;
+    const bool said = settings.step == resolved.time.step && bound.gain == own.gain;
+    if (!said) compare("engines." + engine + ".step_s", settings.step, bound);
   }
   return found;
 }

@@ -9,17 +9,15 @@ namespace crossdem {
 
 /// What the particles received from the surfaces at the latest evaluation of forces.
 struct SurfaceTotals {
-  std::array<Vector2, all_surfaces.size()> force;  // [N]
+  std::array<Vector2, all_surfaces.size()> force{Vector2::Zero(), Vector2::Zero(), Vector2::Zero(),
+                                                 Vector2::Zero()};  // [N]
   BarForce on_bar;
 
   void add(const Surfaces& surfaces, Surface surface, const Vector2& centre, const Vector2& received) {
     force[static_cast<std::size_t>(surface)] += received;
     if (surface == Surface::bar) (surfaces.bar->touches_tip(centre) ? on_bar.tip : on_bar.shaft) -= received;
   }
-  void clear() {
-    force.fill(Vector2::Zero());
-    on_bar = {};
-  }
+  void clear() { *this = {}; }
 };
 
 struct World {
@@ -48,8 +46,8 @@ struct World {
     totals.clear();
   }
 
-  /// Enters into the ledgers that the latest totals act for `time` [s], over `share` of the bar's last displacement.
-  void enter_impulses(double time, double share);
+  /// Enters into the ledgers that the latest totals act for this `share` of a step and of the bar's last displacement.
+  void enter_impulses(double share);
 
   /// Throws SimulationError, see Simulation::check.
   void check() const;
@@ -67,9 +65,5 @@ class Stepper {
   /// [J] in the springs of all contacts.
   [[nodiscard]] virtual double spring_energy(const World& world) const = 0;
 };
-
-/// [m] Neighbours within a fifth of the smallest diameter are listed: wide enough that lists last hundreds of steps in
-/// a bed that creeps, narrow enough that few pairs are looked at in vain.
-double list_skin(const Particles& particles);
 
 }  // namespace crossdem

@@ -265,14 +265,28 @@ TEST(PlacedParticles, NeedNoBar) {
 
 TEST(PlacedParticles, ABarStartsWhereTheCaseSays) {
   EXPECT_EQ(make_packing(placed({{"bar", {{"tip_m", 0.01}}}}), 1).bar_tip, 0.01);
-  const auto refused = message_of<CaseError>([] { make_packing(placed({{"bar", {{"tip_m", 0.001}}}}), 1); });
+  const auto refused = message_of<CaseError>([] { placed({{"bar", {{"tip_m", 0.001}}}}); });
   EXPECT_EQ(refused.value_or("").substr(0, 54), "bar.tip_m: with its bottom face at 0.001 m particle 0 ");
 }
 
-TEST(PlacedParticles, OutsideTheContainerAreAFault) {
-  nlohmann::json outside = nlohmann::json::array({{{"x_m", -0.01}, {"y_m", 0.002}, {"radius_m", 0.002}}});
-  const auto refused = message_of<CaseError>([&] { placed({{"particle", outside}}); });
-  EXPECT_EQ(refused.value_or(""), "particle[0]: its centre is outside the container");
+TEST(PlacedParticles, ThatNoContactCouldPartAreAFault) {
+  const auto disc = [](double x, double y) { return nlohmann::json{{"x_m", x}, {"y_m", y}, {"radius_m", 0.002}}; };
+  const auto refused = [](const nlohmann::json& discs) {
+    return message_of<CaseError>([&] { placed({{"particle", discs}, {"bar", nullptr}}); }).value_or("");
+  };
+  EXPECT_EQ(refused(nlohmann::json::array({disc(-0.01, 0.002)})),
+            "particle[0]: its centre is not inside the container");
+  EXPECT_EQ(refused(nlohmann::json::array({disc(0.01, 0.0)})), "particle[0]: its centre is not inside the container");
+  EXPECT_EQ(refused({disc(0.01, 0.01), disc(0.02, 0.01), disc(0.01, 0.01)}),
+            "particle[2]: its centre is that of particle[0]");
+}
+
+TEST(PlacedParticles, WithoutOneUnderTheBarItMustSayWhereItStarts) {
+  const nlohmann::json aside = nlohmann::json::array({{{"x_m", 0.01}, {"y_m", 0.01}, {"radius_m", 0.002}}});
+  EXPECT_EQ(message_of<CaseError>([&] {
+              placed({{"particle", aside}});
+            }).value_or(""),
+            "bar.tip_m: no particle is under the bar for it to touch: say where it starts");
 }
 
 }  // namespace

@@ -30,6 +30,10 @@ struct Packing {
 /// is higher than the container or so low that the bar would reach the floor.
 Packing make_packing(const Case& setup, std::uint64_t seed);
 
+/// The scheme by which a bed settles: the paper's with the readings of the case. With a conventional integrator it
+/// would not come to rest at the paper's time step, and the other schemes are best compared on the paper's beds.
+SchemeChoice settling_scheme(const SchemeChoice& choice);
+
 /// Height at which a bar of this geometry touches the topmost particle under it, corners included [m].
 double touching_height(const BarGeometry& bar, const std::vector<double>& radius, const std::vector<Vector2>& position);
 

@@ -19,7 +19,9 @@ concept ConventionalScheme = requires(Scheme scheme, World& world, bool advance,
   scheme.surface(world, contacts.on_surfaces().front(), advance);
   scheme.after_pairs(world);
   scheme.finish(world);
+  scheme.begin_evaluation();
   { scheme.spring_energy() } -> std::same_as<double>;
+  { Scheme::first_evaluation_advances } -> std::convertible_to<bool>;
 };
 
 template <ConventionalScheme Scheme>
@@ -29,6 +31,7 @@ class ConventionalStepper final : public Stepper {
       : scheme_(setup, world), contacts_(MemoryOwner::pair, list_skin(world.particles)) {
     contacts_.rebuild(world.particles, world.surfaces);
     evaluate(world, Scheme::first_evaluation_advances);
+    world.energy_ledger = {};  // no time has passed
   }
 
   void advance(World& world, long steps) override {

@@ -89,7 +89,7 @@ class LiggghtsScheme {
   /// Half a kick, the drift, the bar.
   void move(World& w) {
     motion_.begin(w.particles);
-    w.enter_impulses(Motion::first_share * w.dt, Motion::first_share);
+    w.enter_impulses(Motion::first_share);
     half_kick(w);
     Particles& p = w.particles;
     for (std::size_t i = 0; i < p.count(); ++i) {
@@ -107,7 +107,7 @@ class LiggghtsScheme {
 
   void finish(World& w) {
     half_kick(w);
-    w.enter_impulses((1.0 - Motion::first_share) * w.dt, 1.0 - Motion::first_share);
+    w.enter_impulses(1.0 - Motion::first_share);
     motion_.end(w);
   }
 
@@ -186,15 +186,15 @@ class LiggghtsScheme {
 
  private:
   struct Approach {
-    Vector2 delta;         // [m], from the partner's centre or the wall's closest point to the centre of i
-    double inverse = 0.0;  // 1 / distance [1/m]
-    double overlap = 0.0;  // [m]
-    Vector2 velocity;      // [m/s], of i relative to its partner
-    double turning = 0.0;  // [rad/s], of the surfaces, over the distance
+    Vector2 delta = Vector2::Zero();  // [m], from the partner's centre or the wall's closest point to the centre of i
+    double inverse = 0.0;             // 1 / distance [1/m]
+    double overlap = 0.0;             // [m]
+    Vector2 velocity = Vector2::Zero();  // [m/s], of i relative to its partner
+    double turning = 0.0;                // [rad/s], of the surfaces, over the distance
   };
   struct Reaction {
-    Vector2 force;        // [N], on i
-    double couple = 0.0;  // [N]: the moment is -arm x couple
+    Vector2 force = Vector2::Zero();  // [N], on i
+    double couple = 0.0;              // [N]: the moment is -arm x couple
   };
 
   /// The law. `shear` is the contact's memory.

@@ -21,7 +21,7 @@ inline double dot_in_order(const Vector3& a, const Vector3& b) { return a[0] * b
 
 /// What a triangle says of a disc in reach.
 struct MeshContact {
-  Vector2 delta;                        // [m], from the disc's centre to the closest point
+  Vector2 delta = Vector2::Zero();      // [m], from the disc's centre to the closest point
   double distance = 0.0;                // [m]
   std::array<double, 3> barycentric{};  // of the closest point
   bool on_face = false;                 // else on an edge
@@ -117,7 +117,7 @@ class MeshTriangle {
   std::array<Vector3, 3> measured_at_;
   std::array<Vector3, 3> edge_;  // unit vectors, from node k to node k + 1
   std::array<double, 3> length_{};
-  Vector3 normal_;
+  Vector3 normal_ = Vector3::Zero();
   double slack_ = 0.0;  // how far outside counts as on the face, in barycentric coordinates
   std::optional<std::size_t> owned_;
 };

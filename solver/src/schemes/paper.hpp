@@ -35,9 +35,8 @@ class PaperStepper final : public Stepper {
       }
     }
     contacts_.rebuild(p, world.surfaces);
-    take_overlaps_as_old_contacts(world);
     world.clear_loads();
-    if (scheme_.integrator.kicks_twice()) first_loads(world);
+    take_overlaps_as_old_contacts(world, readings.bar_corner);
   }
 
   void advance(World& world, long steps) override {
@@ -61,31 +60,25 @@ class PaperStepper final : public Stepper {
   }
 
  private:
-  void take_overlaps_as_old_contacts(const World& world) {
+  /// Their normal springs are the forces until the first evaluation: an integrator may begin with a kick.
+  void take_overlaps_as_old_contacts(World& world, BarCorner corner) {
     const Particles& p = world.particles;
     for (auto& contact : contacts_.pairs()) {
-      const double overlap =
-          p.radius[contact.i] + p.radius[contact.j] - (p.position[contact.j] - p.position[contact.i]).norm();
-      if (overlap > 0.0) contact.memory = {world.particle_particle.normal_stiffness * overlap, 0.0, true};
+      const Vector2 between = p.position[contact.j] - p.position[contact.i];
+      const double overlap = p.radius[contact.i] + p.radius[contact.j] - between.norm();
+      if (overlap <= 0.0) continue;
+      contact.memory = {world.particle_particle.normal_stiffness * overlap, 0.0, true};
+      const Vector2 push = contact.memory.normal * between.normalized();
+      world.loads[contact.i].force -= push;
+      if (!in_turn_) world.loads[contact.j].force += push;  // else the other has a contact of its own
     }
     for (auto& contact : contacts_.on_surfaces()) {
-      const double overlap =
-          p.radius[contact.i] - world.surfaces.nearest_point(contact.surface, p.position[contact.i]).distance;
-      if (overlap > 0.0) contact.memory = {world.particle_wall.normal_stiffness * overlap, 0.0, true};
-    }
-  }
-
-  /// The loads before the first step, for an integrator that starts with half a kick: those of the springs at rest.
-  void first_loads(World& world) const {
-    const Particles& p = world.particles;
-    for (const auto& contact : contacts_.pairs()) {
-      const Vector2 push = contact.memory.normal * (p.position[contact.j] - p.position[contact.i]).normalized();
-      world.loads[contact.i].force -= push;
-      world.loads[contact.j].force += push;
-    }
-    for (const auto& contact : contacts_.on_surfaces()) {
       const Vector2& centre = p.position[contact.i];
-      const Vector2 received = -contact.memory.normal * world.surfaces.nearest_point(contact.surface, centre).normal;
+      const NearestPoint nearest = world.surfaces.nearest_point(contact.surface, centre);
+      if (!world.surfaces.touch(contact.surface, nearest, centre, p.radius[contact.i], corner)) continue;
+      const double overlap = p.radius[contact.i] - nearest.distance;
+      contact.memory = {world.particle_wall.normal_stiffness * overlap, 0.0, true};
+      const Vector2 received = -contact.memory.normal * nearest.normal;
       world.loads[contact.i].force += received;
       world.totals.add(world.surfaces, contact.surface, centre, received);
     }

@@ -69,15 +69,15 @@ class YadeScheme {
 
   YadeScheme(const Case& setup, const World& world)
       : motion_(world.particles),
-        pairs_(in_series(setup.particle_particle, setup.particle_particle)),
-        walls_(in_series(setup.particle_particle, setup.particle_wall)) {
+        pairs_(in_series(setup.particle_particle, setup.particle_particle, false)),
+        walls_(in_series(setup.particle_particle, setup.particle_wall, true)) {
     if (!world.surfaces.bar) return;
     half_ = {setup.bar->width / 2, setup.bar->length / 2};
     centre_ = {setup.bar->centre_x, world.surfaces.bar->tip() + half_.y()};
   }
 
   void move(World& w) {
-    w.enter_impulses(w.dt, 1.0);
+    w.enter_impulses(1.0);
     for (std::size_t i = 0; i < w.particles.count(); ++i) motion_.move(w.particles, i, w.loads[i], w.gravity, w.dt);
     if (!w.surfaces.bar) return;
     w.surfaces.bar->advance(w.dt);
@@ -134,18 +134,22 @@ class YadeScheme {
 
  private:
   struct Meeting {
-    Vector2 normal;  // from the surface to the disc
-    double overlap = 0.0;
-    Vector2 point;
+    Vector2 normal = Vector2::Zero();  // from the surface to the disc
+    double overlap = 0.0;              // [m]
+    Vector2 point = Vector2::Zero();   // [m], where the law takes the velocities
   };
 
-  /// As two materials with twice the values of particles, and of walls such that both in series give the case's, see
-  /// the adapter; YADE combines them as 1 / (1/a + 1/b). The friction coefficient goes through its angle.
-  static ContactParameters in_series(const ContactParameters& particle, const ContactParameters& wanted) {
-    const auto combined = [](double of_particle, double target) {
+  /// Two materials, particles with twice the values of a pair and walls such that both in series give the case's, as in
+  /// the adapter. YADE combines them by 1 / (1/a + 1/b), in which 0 stands for a rigid one; the friction coefficient
+  /// goes through its angle.
+  static ContactParameters in_series(const ContactParameters& particle, const ContactParameters& wanted,
+                                     bool of_walls) {
+    const auto combined = [of_walls](double of_particle, double target) {
       const double a = 2 * of_particle;
-      const double b = target == of_particle ? a : 1 / (1 / target - 1 / a);
-      return a > 0.0 || b > 0.0 ? 1 / ((a > 0.0 ? 1 / a : 0.0) + (b > 0.0 ? 1 / b : 0.0)) : 0.0;
+      double b = a;
+      if (of_walls) b = a == 0.0 ? target : target == a ? 0.0 : 1 / (1 / target - 1 / a);
+      const double both = (a != 0.0 ? 1 / a : 0.0) + (b != 0.0 ? 1 / b : 0.0);
+      return both != 0.0 ? 1 / both : 0.0;
     };
     return {.normal_stiffness = combined(particle.normal_stiffness, wanted.normal_stiffness),
             .shear_stiffness = combined(particle.shear_stiffness, wanted.shear_stiffness),
