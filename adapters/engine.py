@@ -108,6 +108,20 @@ class Engine(ABC):
         shutil.copyfile(self.script, run_dir / INPUTS / self.script.name)
 
 
-def has_bar_without_corners(case: Case) -> bool:
-    """Whether the case takes the reading of a bar that acts by its faces alone."""
-    return "bar" in case.resolved and case.resolved["scheme"]["bar_corner"] == "faces_only"
+def unexpressed_readings(case: Case) -> list[str]:
+    """The readings of `case` that only the native solver can express, as reasons why others do not run it."""
+    scheme = case.resolved["scheme"]
+    found = []
+    if "bar" in case.resolved and scheme["bar_corner"] == "faces_only":
+        found.append(
+            "its bar always has corners; scheme.bar_corner = faces_only cannot be expressed"
+        )
+    if scheme["inertia"] == "sphere":
+        found.append("its particles are discs; scheme.inertia = sphere cannot be expressed")
+    return found
+
+
+def where_it_differs(case: Case, own: dict[tuple[str, str | None], str]) -> list[str]:
+    """Of an engine's `own` readings, (key, value): sentence, those that are not what `case` says."""
+    scheme = case.resolved["scheme"]
+    return [sentence for (key, value), sentence in own.items() if scheme[key] != value]

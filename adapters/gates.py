@@ -10,6 +10,7 @@ from .dataset import Dataset
 from .dataset_faults import lost_particles
 
 
+REST = "rest_kinetic_energy_J"
 CONTACTS = "contacts_share"
 REFERENCE = "native"  # the engine whose rested bed the others' are compared with
 
@@ -27,7 +28,9 @@ def with_gates(dataset: Dataset, native_contacts: int | None) -> Dataset:
     """
     limits = dataset.case["gates"]
     at_rest = dataset.resistance.iloc[0]
-    gates = [_rest(float(at_rest["kinetic_energy_J"]), limits["rest_kinetic_energy_J"])]
+    gates = []
+    if dataset.case["time"]["rest_s"] > 0:
+        gates.append(_rest(float(at_rest["kinetic_energy_J"]), limits["rest_kinetic_energy_J"]))
     if native_contacts is not None:
         gates.append(_contacts(dataset, native_contacts))
     gates.append(_no_particle_lost(dataset))
@@ -45,7 +48,7 @@ def _rest(energy_J: float, limit_J: float) -> dict:
     passed = energy_J < limit_J
     said = "the bed rests" if passed else "not comparable: the bed does not rest at this time step"
     numbers = f"kinetic energy {energy_J:.3g} J at the end of the rest, allowed {limit_J:.3g} J"
-    return _gate("rest_kinetic_energy_J", energy_J, limit_J, passed, f"{said} ({numbers})")
+    return _gate(REST, energy_J, limit_J, passed, f"{said} ({numbers})")
 
 
 def _contacts(dataset: Dataset, native_contacts: int) -> dict:

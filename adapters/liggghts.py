@@ -23,7 +23,8 @@ from .engine import (
     Engine,
     EngineFailure,
     EngineNotFound,
-    has_bar_without_corners,
+    unexpressed_readings,
+    where_it_differs,
 )
 from .liggghts_input import bar, numbering, numbers, particles
 from .packing import Packing
@@ -56,6 +57,7 @@ class Liggghts(Engine):
     script = Path(__file__).with_name("liggghts_case.in")
     samples_file = SAMPLES
     cost_s = 1.2e-7
+    integration = ("integrator", "velocity_verlet")
     integrator = "integrates by velocity Verlet, not by the averaged displacement of Eqs (19)-(24)"
 
     def executable(self) -> str:
@@ -71,29 +73,37 @@ class Liggghts(Engine):
         return super().environment() | NO_MPI_DAEMON
 
     def unsupported(self, case: Case) -> list[str]:
-        if has_bar_without_corners(case):
-            return [
-                "its bar always has corners; scheme.bar_corner = faces_only cannot be expressed"
-            ]
-        return []
+        return unexpressed_readings(case)
 
     def limitations(self, case: Case) -> list[str]:
-        scheme = case.resolved["scheme"]
-        found = [
-            self.integrator,
-            "caps the shear spring by the absolute total normal force, not by the normal spring force of Eq (9)",
-            "takes torque arms and slip velocity at r - overlap / 2, not at the full radius of Eqs (2) and (12)",
-            "counts a first contact's shear displacement in full, without the share of Eq (4)",
+        own = {
+            (
+                "slip_cap",
+                "total",
+            ): "caps the shear spring by the absolute total normal force, not by the normal spring "
+            "force of Eq (9)",
+            (
+                "torque_arm",
+                "contact_point",
+            ): "takes torque arms and slip velocity at r - overlap / 2, not at the full "
+            "radius of Eqs (2) and (12)",
+            (
+                "first_contact_shear",
+                "whole_step",
+            ): "counts a first contact's shear displacement in full, without the "
+            "share of Eq (4)",
+            (
+                "normal_spring",
+                "overlap",
+            ): "takes the normal spring from the overlap, not by the increments of Eq (5)",
+        }
+        return [
+            *where_it_differs(case, {self.integration: self.integrator} | own),
             "rotates its shear spring with the contact by projection",
             "near a corner of the bar, a disc on its side may feel side and corner at once",
             "keeps no angles of the particles",
-            "of the readings in [scheme] knows only attraction and normal_spring",
+            "of the readings in [scheme] follows only attraction",
         ]
-        if scheme["normal_spring"] == "incremental":
-            found.append(
-                "takes the normal spring from the overlap, not by the increments of Eq (5)"
-            )
-        return found
 
     def command(self, case: Case, run_dir: Path) -> list[str]:
         # Unbuffered, because some of its errors end the process without flushing what they said.
@@ -127,8 +137,8 @@ class Liggghts(Engine):
     def read_output(self, case: Case, packing: Packing, run_dir: Path, manifest: dict) -> Dataset:
         schedule = self.schedule(case)
         radius_m = packing.particles["radius_m"].to_numpy(dtype=float)
-        resistance = _read_samples(run_dir / SAMPLES, case.resolved, schedule)
-        motion = _read_frames(run_dir / FRAMES, case.resolved, schedule, packing)
+        resistance = _read_samples(run_dir / SAMPLES, case.resolved, schedule, self.name)
+        motion = _read_frames(run_dir / FRAMES, case.resolved, schedule, packing, self.name)
         return Dataset(case.resolved, manifest, radius_m, motion, resistance)
 
 
@@ -142,6 +152,7 @@ class LiggghtsAveraged(Liggghts):
         rb"^(Setting atom values \.\.\.| +\d+ settings made for \w+| +Step .*| +\d+( +[-+.e\d]+){7} *|Loop time .*|)\n",
         re.MULTILINE,
     )
+    integration = ("integrator", None)  # always worth saying
     integrator = (
         "integrates by velocity Verlet from velocities that are set after every step such that it moves by the "
         "averaged displacement of Eqs (19)-(24)"
@@ -170,7 +181,7 @@ def _version(executable: str) -> str:
     return found[1]
 
 
-def _read_samples(path: Path, case: dict, schedule: Schedule) -> pd.DataFrame:
+def _read_samples(path: Path, case: dict, schedule: Schedule, engine: str) -> pd.DataFrame:
     """The table of resistance from the samples at and after the start of the bar."""
     try:
         table = pd.read_csv(
@@ -182,13 +193,13 @@ def _read_samples(path: Path, case: dict, schedule: Schedule) -> pd.DataFrame:
             float_precision="round_trip",
         ).astype(float)
     except (OSError, ValueError) as error:
-        raise EngineFailure(f"liggghts left no readable {path.name} ({error})") from error
+        raise EngineFailure(f"{engine} left no readable {path.name} ({error})") from error
     table["step"] -= numbering(schedule)[1]
-    table = resistance_table(table, case, schedule, "liggghts")
+    table = resistance_table(table, case, schedule, engine)
     # f_bar sums over the bar's contacts, the other two over the discs: they must be the same force.
     gap_N = (table["tip_force_y_N"] + table["shaft_force_y_N"] - table["force_y_N"]).abs().max()
     if gap_N > FORCE_TOLERANCE_N + FORCE_ROUNDING * table["force_y_N"].abs().max():
-        raise EngineFailure(f"liggghts: tip and shaft miss the bar's force by {gap_N:.3g} N")
+        raise EngineFailure(f"{engine}: tip and shaft miss the bar's force by {gap_N:.3g} N")
     return table
 
 
@@ -196,13 +207,15 @@ def _bar_tip_m(case: dict, packing: Packing, time_s: np.ndarray) -> np.ndarray |
     return packing.bar_tip_m - case["bar"]["speed_m_s"] * time_s if "bar" in case else None
 
 
-def _read_frames(path: Path, case: dict, schedule: Schedule, packing: Packing) -> Motion:
+def _read_frames(
+    path: Path, case: dict, schedule: Schedule, packing: Packing, engine: str
+) -> Motion:
     """The motion after the rest, from a text dump whose frames all have the same particles, sorted by id."""
     count = len(packing.particles)
     try:
         text = whole_lines(path).splitlines()
     except OSError as error:
-        raise EngineFailure(f"liggghts left no readable {path.name} ({error.strerror})") from error
+        raise EngineFailure(f"{engine} left no readable {path.name} ({error.strerror})") from error
     block = FRAME_HEADER_LINES + count
     _, start_step = numbering(schedule)
     frames, steps = [], []
@@ -211,7 +224,7 @@ def _read_frames(path: Path, case: dict, schedule: Schedule, packing: Packing) -
         try:
             if int(lines[3]) != count:
                 raise EngineFailure(
-                    f"liggghts lost {count - int(lines[3])} particles by step {lines[1]}"
+                    f"{engine} lost {count - int(lines[3])} particles by step {lines[1]}"
                 )
             frame = np.array([line.split() for line in lines[FRAME_HEADER_LINES:]], dtype=float)
             whole = frame.shape == (count, len(FRAME_COLUMNS))
@@ -222,13 +235,13 @@ def _read_frames(path: Path, case: dict, schedule: Schedule, packing: Packing) -
         if int(lines[1]) >= start_step:
             steps.append(int(lines[1]) - start_step)
             frames.append(frame)
-    time_s = frame_times(np.array(steps, dtype=int), case, schedule, "liggghts")
+    time_s = frame_times(np.array(steps, dtype=int), case, schedule, engine)
     values = np.stack(frames)
     if not np.isfinite(values).all():
-        raise EngineFailure("liggghts wrote positions or velocities that are not finite")
+        raise EngineFailure(f"{engine} wrote positions or velocities that are not finite")
     if not (values[:, :, 0] == np.arange(1, count + 1)).all():
         raise EngineFailure(
-            "liggghts lost particles: the ids in its frames are not those of the packing"
+            f"{engine} lost particles: the ids in its frames are not those of the packing"
         )
     return Motion(
         time_s=time_s,

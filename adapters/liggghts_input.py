@@ -86,8 +86,13 @@ def particles(case: dict, packing: Packing) -> str:
 
 
 def _top_m(case: dict, packing: Packing) -> float:
-    """Upper end of the domain: a container's height above all that is there at the start."""
-    highest_m = float((packing.particles["y_m"] + packing.particles["radius_m"]).max())
+    """Upper end of the domain: a container's height above all that is there at the start, and above where it flies."""
+    discs, time = packing.particles, case["time"]
+    rising_m_s = discs["velocity_y_m_s"].clip(lower=0)
+    rise_m = rising_m_s * (time["rest_s"] + time["penetration_s"])
+    if case["gravity_m_s2"] > 0:
+        rise_m = rise_m.clip(upper=rising_m_s**2 / (2 * case["gravity_m_s2"]))
+    highest_m = float((discs["y_m"] + rise_m + discs["radius_m"]).max())
     if "bar" in case:
         highest_m = max(highest_m, packing.bar_tip_m + case["bar"]["length_m"])
     return highest_m + case["container"]["height_m"]

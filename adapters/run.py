@@ -26,6 +26,7 @@ class RunResult:
     dataset_folder: Path | None
     failure: str | None  # why there is no dataset
     status: str  # done, reused, failed, missing, unsupported
+    exit_status: int | None = None  # of the process, where it ended by itself in this call
 
 
 # Called about twice a second for every run in progress: the request, the share done, the seconds left if known.
@@ -161,7 +162,8 @@ class _Queue:
             self._answer(run.request, "done" if run.started else "reused", folder=run.folder)
 
     def _fail(self, run: Run, reason: str) -> None:
-        self._answer(run.request, "failed", failure=run.put_aside(reason))
+        exit_status = run.ending.status if run.ending else None
+        self._answer(run.request, "failed", failure=run.put_aside(reason), exit_status=exit_status)
 
     def _answer(
         self,
@@ -169,8 +171,9 @@ class _Queue:
         status: str,
         folder: Path | None = None,
         failure: str | None = None,
+        exit_status: int | None = None,
     ) -> None:
-        self.results[id(request)] = RunResult(request, folder, failure, status)
+        self.results[id(request)] = RunResult(request, folder, failure, status, exit_status)
 
 
 def _bed(run: Run) -> tuple[str, str]:

@@ -5,6 +5,8 @@ import shutil
 import subprocess
 from pathlib import Path
 
+# The solver's exit status where a motion is not finite, leaves the box, explodes or does not settle.
+BEYOND_REASON = 3
 _IN_CHECKOUT = Path(__file__).resolve().parent.parent / "build/release/solver/crossdem-solver"
 
 

@@ -10,6 +10,7 @@ from .case import Case
 from .packing import packing_key
 
 _MARKER = "crossdem.json"
+_RUN_FOLDERS = ("runs", "variants", "failed")
 _MARK = {"made_by": "crossdem", "layout": 1}
 
 
@@ -38,8 +39,8 @@ class Workspace:
         return self.root / "packings" / f"seed{seed}-{packing_key(case, seed)[:12]}"
 
     def discard_if_new(self) -> None:
-        """Undoes the constructor: for a fault that shows only after it, before there are results."""
-        if self._is_new:
+        """Undoes the constructor: for a fault that shows only after it. Not once there are runs, which it would orphan."""
+        if self._is_new and not any((self.root / name).exists() for name in _RUN_FOLDERS):
             (self.root / _MARKER).unlink(missing_ok=True)
             # New like all the rest, so what lies in it is ours.
             shutil.rmtree(self.root / "packings", ignore_errors=True)

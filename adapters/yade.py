@@ -21,7 +21,8 @@ from .engine import (
     Engine,
     EngineFailure,
     EngineNotFound,
-    has_bar_without_corners,
+    unexpressed_readings,
+    where_it_differs,
 )
 from .packing import Packing
 from .sample_table import SAMPLE_COLUMNS, frame_times, resistance_table, whole_lines
@@ -41,6 +42,7 @@ class Yade(Engine):
     memory_script = Path(__file__).with_name("yade_averaged.py")  # imported by the other
     samples_file = SAMPLES
     cost_s = 4e-7
+    integration = ("integrator", "leap_frog")
     integrator = (
         "integrates by leap-frog, not by the averaged displacement of Eqs (19)-(24)",
         "its velocities and its kinetic energy are those of half a time step before their time",
@@ -56,11 +58,7 @@ class Yade(Engine):
         return _version()
 
     def unsupported(self, case: Case) -> list[str]:
-        found = []
-        if has_bar_without_corners(case):
-            found.append(
-                "its bar always has corners; scheme.bar_corner = faces_only cannot be expressed"
-            )
+        found = unexpressed_readings(case)
         pair = case.resolved["contact"]["particle_particle"]
         wall = case.resolved["contact"]["particle_wall"]
         for key, value in wall.items():
@@ -71,25 +69,34 @@ class Yade(Engine):
         return found
 
     def limitations(self, case: Case) -> list[str]:
-        scheme = case.resolved["scheme"]
-        found = [
-            *self.integrator,
-            "caps the shear spring by the total normal force, not by the normal spring force of Eq (9)",
+        own = {
+            (
+                "slip_cap",
+                "total",
+            ): "caps the shear spring by the total normal force, not by the normal spring force of "
+            "Eq (9)",
+            (
+                "first_contact_shear",
+                "whole_step",
+            ): "counts a first contact's shear displacement in full, without the "
+            "share of Eq (4)",
+            (
+                "attraction",
+                "clipped",
+            ): "clips attraction in the normal direction; Eqs (6) and (8) let the dashpot pull",
+            (
+                "normal_spring",
+                "overlap",
+            ): "takes the normal spring from the overlap, not by the increments of Eq (5)",
+        }
+        return [
+            *where_it_differs(case, {self.integration: self.integrator[0]} | own),
+            *self.integrator[1:],
             "takes torque arms and slip velocity at r - overlap / 2, at the container's walls at r - overlap, "
             "not at the full radius of Eqs (2) and (12)",
-            "counts a first contact's shear displacement in full, without the share of Eq (4)",
             "rotates its shear spring with the contact to first order",
-            "of the readings in [scheme] knows only attraction and normal_spring",
+            "of the readings in [scheme] follows none",
         ]
-        if scheme["attraction"] != "clipped":
-            found.append(
-                "clips attraction in the normal direction; Eqs (6) and (8) let the dashpot pull"
-            )
-        if scheme["normal_spring"] == "incremental":
-            found.append(
-                "takes the normal spring from the overlap, not by the increments of Eq (5)"
-            )
-        return found
 
     def command(self, case: Case, run_dir: Path) -> list[str]:
         return [self.program, f"{INPUTS}/{self.script.name}", self.name]
@@ -121,6 +128,7 @@ class YadeAveraged(Yade):
 
     name = "yade-averaged"
     cost_s = 2.5e-6
+    integration = ("integrator", None)  # always worth saying
     integrator = (
         "integrates by leap-frog with doubled mass and inertia, halved gravity and a memory force that make it the "
         "averaged displacement of Eqs (19)-(24)",
@@ -131,8 +139,9 @@ class YadeAveraged(Yade):
 def _version() -> str:
     """As YADE's configuration module has it; asked in a process of its own, as an import of YADE takes over signals."""
     ask = (
-        "import glob, sys; sys.path[1:1] = glob.glob('/usr/lib/*/yade-double/py'); "
-        "import yade.config; print('YADE', yade.config.version)"
+        "import glob, os, shutil, sys; sys.path[1:1] = glob.glob('/usr/lib/*/yade-double/py'); "
+        "import yade.config; print('YADE', yade.config.version); "
+        "shutil.rmtree(os.path.dirname(yade.O.tmpFilename()))"
     )
     try:
         done = subprocess.run(

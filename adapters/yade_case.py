@@ -230,11 +230,13 @@ def state_of_particles():
 
 
 angles = np.zeros(len(particles))
+spins = np.array([disc["angular_velocity_rad_s"] for disc in discs])
+recorded = 0  # step
 
 
 def record(step, samples, frames):
     """Append the sample and the frame that are due, forced out: progress shows, and a full disk is noticed."""
-    global angles
+    global angles, spins, recorded
     now = state_of_particles()
     if memory:
         now[:, [2, 3, 5]] = memory.velocities()
@@ -242,10 +244,10 @@ def record(step, samples, frames):
         sys.exit(
             f"positions or velocities are not finite {(step - rest) * step_s:.6g} s after the rest"
         )
-    angles += (
-        np.remainder(now[:, 4] - angles + math.pi, 2 * math.pi) - math.pi
-    )  # less than half a turn per sample
-    now[:, 4] = angles
+    # An orientation is known but for whole turns; these follow from the spins since the last record.
+    angles += 0.5 * (spins + now[:, 5]) * (step - recorded) * step_s
+    angles += np.remainder(now[:, 4] - angles + math.pi, 2 * math.pi) - math.pi
+    now[:, 4], spins, recorded = angles, now[:, 5].copy(), step
     energy_J = 0.5 * np.sum(
         masses_kg * (now[:, 2] ** 2 + now[:, 3] ** 2) + inertias_kg_m2 * now[:, 5] ** 2
     )

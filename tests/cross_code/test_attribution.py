@@ -51,4 +51,4 @@ def test_a_step_that_never_rests_is_shown_and_the_walk_goes_on(tmp_path, require
         out,
     )
     assert ended.returncode == 0, ended.stderr
-    assert "in 1 of 1 the bed does not rest" in " ".join(ended.stdout.split())
+    assert "refuse 1 of 1: the bed does not rest" in " ".join(ended.stdout.split())

@@ -49,6 +49,29 @@ def wall_to_wall(folder):
     return few_particles([disc], folder, *CLOSE, *damping, "time.penetration_s=0.3")
 
 
+def stiff_walls(folder):
+    """Walls more than twice as stiff as particles, and damping of walls alone: YADE has them in series."""
+    changes = (
+        "contact.particle_wall.normal_stiffness_N_m=3000.0",
+        "contact.particle_particle.normal_damping_N_s_m=0.0",
+        "contact.particle_particle.shear_damping_N_s_m=0.0",
+    )
+    disc = Disc(0.008, 0.006, velocity_x=0.1, spin=10.0)
+    return few_particles([disc], folder, *CLOSE, *changes, "time.penetration_s=0.1")
+
+
+def under_the_bar(folder):
+    """Pressed by the bar's corner from the first evaluation on."""
+    disc = Disc(0.0135, 0.004)
+    return few_particles([disc], folder, *CLOSE, "time.penetration_s=0.02", bar_tip_m=0.006)
+
+
+def thrown_up(folder):
+    """Far beyond the container, which has no lid, and spinning by many turns between two frames."""
+    disc = Disc(0.01, 0.03, velocity_y=2.0, spin=4000.0)
+    return few_particles([disc], folder, *FREE)
+
+
 def five_in_a_box(folder):
     return few_particles(heap(5, WIDTH_M, seed=2), folder, *CLOSE, "time.penetration_s=0.5")
 
@@ -70,6 +93,9 @@ LIMITS_M = {
     head_on: {},
     oblique: {},
     wall_to_wall: {},
+    stiff_walls: {},
+    under_the_bar: {},
+    thrown_up: {},
     five_in_a_box: {},
     bar_and_24: {},
     whole_bed: {"yade": 1e-12, "yade-averaged": 1e-12},
@@ -100,6 +126,9 @@ def parting(engine, native):
         "velocity_m_s": lambda run: run.motion.velocity_m_s,
         "angular_velocity_rad_s": lambda run: run.motion.angular_velocity_rad_s,
         "bar_force_N": lambda run: run.resistance["force_y_N"].to_numpy(),
+        "sideways_force_N": lambda run: run.resistance["force_x_N"].to_numpy(),
+        "tip_force_N": lambda run: run.resistance["tip_force_y_N"].to_numpy(),
+        "contacts": lambda run: run.resistance["contacts"].to_numpy(),
         "floor_force_N": lambda run: run.resistance["floor_force_y_N"].to_numpy(),
     }
     return {
@@ -118,4 +147,8 @@ def test_the_native_scheme_of_its_name_moves_every_particle_alike(case_of, engin
     assert parted["velocity_m_s"] * step_s <= limit_m, parted
     assert parted["angular_velocity_rad_s"] * step_s * engine.radius_m.max() <= limit_m, parted
     # Sums over all contacts, here in the order of the particles and there in that of the contacts.
-    assert max(parted["bar_force_N"], parted["floor_force_N"]) <= 1e-12 + 1000 * limit_m, parted
+    forces_N = [value for name, value in parted.items() if name.endswith("_N")]
+    assert max(forces_N) <= 1e-12 + 1000 * limit_m, parted
+    assert parted["contacts"] == 0, parted
+    if engine.motion.angle_rad is not None:
+        assert engine.motion.angle_rad == pytest.approx(native.motion.angle_rad, rel=1e-9, abs=1e-9)

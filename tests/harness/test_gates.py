@@ -7,8 +7,10 @@ from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.gates import with_gates
 
 
-def gates(native_contacts=1700, **at_rest):
-    whole = synthetic.dataset(synthetic.case())
+def gates(native_contacts=1700, rest_s=1.2, **at_rest):
+    case = synthetic.case()
+    case.resolved["time"]["rest_s"] = rest_s
+    whole = synthetic.dataset(case)
     table = whole.resistance.assign(kinetic_energy_J=1e-10)
     for column, value in at_rest.items():
         table.loc[0, column] = value
@@ -43,3 +45,7 @@ def test_contacts_may_differ_from_native_by_one_per_cent(contacts, passed):
 
 def test_without_a_native_run_there_is_no_gate_on_contacts():
     assert "contacts_share" not in gates(native_contacts=None)
+
+
+def test_without_a_rest_nothing_need_be_at_rest():
+    assert "rest_kinetic_energy_J" not in gates(rest_s=0.0, kinetic_energy_J=1.0)

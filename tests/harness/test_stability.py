@@ -8,11 +8,12 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 import synthetic
-from command_line import REFERENCE, crossdem
+from command_line import REFERENCE, ROOT, crossdem
 from rich.console import Console
 from test_report import HOSTILE, Page
 
 from crossdem.adapters.case import load_case
+from crossdem.adapters.solver import BEYOND_REASON
 from crossdem.compare import stability, stability_report, stability_tables
 from crossdem.compare.stability import (
     AGITATED,
@@ -23,22 +24,30 @@ from crossdem.compare.stability import (
     StabilityMap,
     Trial,
 )
+from crossdem.compare.wording import DASH
 
-PAPER, LEAP_FROG = SCHEMES[0], SCHEMES[2]
+PAPER, LEAP_FROG, YADE = (
+    next(scheme for scheme in SCHEMES if scheme.name == name)
+    for name in ("paper", "paper with leap-frog", "yade")
+)
 CASE = synthetic.case()
+MANIFEST = synthetic.dataset(CASE).manifest
 
 
-def run(energy_J=None, failure=None):
+def run(energy_J=None, failure=None, exit_status=None):
     """As run_variants gives it."""
     dataset = synthetic.dataset(CASE)
     if energy_J is not None:
         dataset.resistance.loc[0, "kinetic_energy_J"] = energy_J
     return SimpleNamespace(
-        packing=SimpleNamespace(seed=1), failure=failure, dataset=lambda: dataset
+        packing=SimpleNamespace(seed=1),
+        failure=failure,
+        exit_status=exit_status,
+        dataset=lambda: dataset,
     )
 
 
-def found(outcomes, title="A title", scheme=PAPER):
+def found(outcomes, title="A title", scheme=PAPER, left_out=None):
     """A map of one scheme with these outcomes at 100, 200, ... microseconds; of several beds where there are lists."""
     trials = [
         Trial(scheme.name, (place + 1) * 1e-4, seed + 1, outcome, 1e-5, "")
@@ -46,7 +55,9 @@ def found(outcomes, title="A title", scheme=PAPER):
         for seed, outcome in enumerate([beds] if isinstance(beds, str) else beds)
     ]
     case = synthetic.case(title=title)
-    return StabilityMap(case, stability.bounds(case), 1.2, tuple(trials))
+    return StabilityMap(
+        case, stability.bounds(case), 1.2, tuple(trials), left_out or {}, (MANIFEST,)
+    )
 
 
 @pytest.mark.parametrize("energy_J, outcome", [(9e-9, QUIET), (1.1e-8, AGITATED), (5e-3, AGITATED)])
@@ -55,9 +66,11 @@ def test_the_gate_on_the_rest_tells_quiet_from_agitated(energy_J, outcome):
 
 
 def test_only_a_solver_that_gave_up_on_the_motion_has_blown_up():
-    gone = "native ended with status 1: the kinetic energy exploded to 3 J after 90 steps of 0.0003 s; try a smaller time step"
-    assert stability.trial(PAPER, 3e-4, run(failure=gone)).outcome == BLOWN_UP
-    assert stability.trial(PAPER, 3e-4, run(failure="native: the disk is full")).outcome == FAILED
+    gone = run(failure="native ended with status 3: exploded", exit_status=BEYOND_REASON)
+    assert stability.trial(PAPER, 3e-4, gone).outcome == BLOWN_UP
+    for status in (None, 1, -9):  # a timeout, a full disk, out of memory
+        full = run(failure="native: try a smaller time step", exit_status=status)
+        assert stability.trial(PAPER, 3e-4, full).outcome == FAILED
 
 
 def test_the_bounds_are_those_of_the_solver():
@@ -84,6 +97,9 @@ def test_an_undamped_case_has_no_linear_bound_and_still_a_map():
     case = synthetic.case(contact=contact)
     assert stability.bounds(case).averaged_s == math.inf
     assert len(stability.default_steps_s(case)) > 10
+    trials = (Trial(PAPER.name, 1e-4, 1, QUIET, 1e-9, ""),)
+    undamped = StabilityMap(case, stability.bounds(case), 1.2, trials, {})
+    assert cell(undamped, "linear bound") == DASH
 
 
 def test_the_default_time_steps_reach_beyond_all_bounds_and_hold_those_of_the_case():
@@ -113,6 +129,49 @@ def test_quiet_reaches_up_to_the_first_bed_that_is_not():
     assert found([QUIET]).loud_from_s(PAPER) is None
 
 
+def test_a_run_that_failed_tells_neither_quiet_nor_loud():
+    top = found([QUIET, QUIET, FAILED])
+    assert top.quiet_up_to_s(PAPER) == pytest.approx(2e-4)
+    assert top.loud_from_s(PAPER) is None and top.perhaps_further(PAPER)
+    between = found([QUIET, FAILED, AGITATED])
+    assert between.quiet_up_to_s(PAPER) == pytest.approx(1e-4)
+    assert between.loud_from_s(PAPER) == pytest.approx(3e-4) and between.perhaps_further(PAPER)
+    assert not found([QUIET, AGITATED]).perhaps_further(PAPER)
+    assert found([FAILED]).quiet_up_to_s(PAPER) is None
+    one_of_two = found([QUIET, [QUIET, FAILED]])
+    assert one_of_two.quiet_up_to_s(PAPER) == pytest.approx(1e-4)
+
+
+def test_the_sentence_says_at_least_and_names_what_rests_nowhere():
+    assert "rests up to at least 200 µs (paper)" in stability_tables.sentence(found([QUIET, QUIET]))
+    assert "rests up to 100 µs (paper);" in stability_tables.sentence(found([QUIET, AGITATED]))
+    rows = [*found([QUIET, AGITATED]).trials, *found([AGITATED], scheme=YADE).trials]
+    both = StabilityMap(CASE, stability.bounds(CASE), 1.2, tuple(rows), {})
+    assert "nowhere here under yade;" in stability_tables.sentence(both)
+
+
+def test_a_scheme_that_refuses_a_reading_is_left_out_and_the_others_go_on():
+    case = load_case(REFERENCE, ["scheme.attraction=clipped"])
+    places, left_out = stability.grid(case, [5e-5])
+    assert set(left_out) == {"yade", "yade_averaged"}
+    assert all("scheme.name" in why for why in left_out.values())
+    assert {place.scheme.name for place in places} | set(left_out) == {s.name for s in SCHEMES}
+    said = stability_tables.remarks(found([QUIET], left_out=left_out))
+    assert said[0][1].startswith("left out: ")
+
+
+def test_particles_placed_by_hand_are_no_bed(tmp_path):
+    placed = ROOT / "reference_cases" / "micro" / "head_on_pair.toml"
+    ended = crossdem("stability", placed, cwd=tmp_path)
+    assert ended.returncode == 2 and "[[particle]]" in ended.stderr, ended.stderr
+    assert "crossdem check" in ended.stderr and not list(tmp_path.iterdir())
+
+
+def cell(shown, title):
+    """Of the first scheme's row."""
+    return stability_tables.rows(shown)[0][stability_tables.TITLES.index(title)]
+
+
 def test_the_bound_of_a_scheme_is_that_of_its_integrator():
     bounds = stability.bounds(CASE)
     assert bounds.of(PAPER) == pytest.approx(3 * bounds.of(LEAP_FROG))
@@ -125,8 +184,11 @@ def test_page_files_and_terminal(tmp_path, capsys):
     parsed = Page(text)
     assert not {"script", "img", "link", "a"} & set(parsed.tags)
     assert parsed.tags.count("svg") == 2
-    for outcome in (QUIET, AGITATED, BLOWN_UP):
-        assert outcome in parsed.text
+    shown = [cells for _, [cells] in stability_tables.trial_rows(everything)]
+    assert [text.partition(",")[0] for text in shown] == [QUIET, AGITATED, BLOWN_UP, FAILED]
+    drawn = re.findall(r"<td[^>]*>([^<]*)</td>", text[text.index('id="trials"') :])
+    assert [text for text in drawn if text in shown] == shown
+    assert "native 1.0" in parsed.text and MANIFEST["packing_hash"][:12] in parsed.text
     assert "Eq (32)" in text
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {"stability.html", "stability.png", "stability.csv", "stability.json"}
@@ -140,7 +202,7 @@ def test_page_files_and_terminal(tmp_path, capsys):
 
 
 def test_where_nothing_rests_it_says_so():
-    assert stability_tables.sentence(found([AGITATED])).startswith("Nothing rests")
+    assert stability_tables.sentence(found([AGITATED])).startswith("No bed is known to rest")
     assert stability_tables.rows(found([AGITATED]))[0][1] == stability_tables.NOWHERE
 
 

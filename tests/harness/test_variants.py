@@ -1,15 +1,21 @@
 """Variants of a case on shared packings: what changes, what is run once, and where it lies."""
 
 import pytest
+from command_line import ROOT
 from rich.console import Console
 from small_case import small_case
 
-from crossdem.adapters.case import CaseError, varied
+from crossdem.adapters.case import CaseError, load_case, varied
 from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run import RunRequest, run_all
+from crossdem.adapters.solver import BEYOND_REASON
 from crossdem.adapters.workspace import Workspace
 from crossdem.compare.progress import ProgressDisplay
+from crossdem.compare.runs import settle
 from crossdem.compare.variants import Variant, run_variants
+
+
+PLACED = ROOT / "reference_cases" / "micro" / "head_on_pair.toml"
 
 
 def test_a_variant_of_nothing_is_the_case_itself():
@@ -79,6 +85,7 @@ def test_runs_of_the_case_itself_lie_alone_in_runs(ran):
 def test_a_variant_that_blows_up_is_an_answer_and_the_others_go_on(ran):
     *others, blown = ran[1]
     assert blown.folder is None and "try a smaller time step" in blown.failure
+    assert blown.exit_status == BEYOND_REASON and not blown.unsupported
     assert all(run.folder and not run.failure for run in others)
 
 
@@ -91,6 +98,13 @@ def test_the_contacts_of_a_variant_are_no_reference_for_another(tmp_path):
     for result in results:
         gates = {gate["name"]: gate for gate in _gates(result)}
         assert gates["contacts_share"]["value"] == 0
+
+
+def test_particles_placed_by_hand_are_one_packing(tmp_path):
+    case = load_case(PLACED)
+    with ProgressDisplay(Console(quiet=True)) as display:
+        packings, unsettled = settle(case, 5, Workspace(tmp_path / "out"), 1, display)
+    assert [packing.seed for packing in packings] == [1] and not unsettled
 
 
 def _gates(result):

@@ -14,8 +14,9 @@ hash_results() {
   mkdir -p "$results"
   "$2" pack "$small_bed" --seed 1 --output "$results/packing"
   for scheme in paper liggghts yade liggghts_averaged yade_averaged; do
-    sed "s/\"schema_version\": 1/&, \"scheme\": {\"name\": \"$scheme\"}/" "$small_bed" |
-      "$2" run - --packing "$results/packing/packing.csv" --output "$results/$scheme"
+    sed "s/\"schema_version\": 1/&, \"scheme\": {\"name\": \"$scheme\"}/" "$small_bed" >"$results/$scheme.json"
+    "$2" resolve "$results/$scheme.json" | grep -q "\"name\":\"$scheme\""
+    "$2" run "$results/$scheme.json" --packing "$results/packing/packing.csv" --output "$results/$scheme"
   done
   (cd "$results" && sha256sum packing/* */resistance.csv */ledger.csv) >"$work_dir/$1.sha256"
 }

@@ -65,8 +65,9 @@ class LiggghtsScheme {
     Vector2 shear = Vector2::Zero();  // [m], displacement of the shear spring
   };
   struct SurfaceMemory {
-    std::array<Vector2, MeshBar::faces> shear{Vector2::Zero(), Vector2::Zero(),
-                                              Vector2::Zero()};  // [m], by the bar's face
+    std::array<Vector2, MeshBar::size> shear{Vector2::Zero(), Vector2::Zero(), Vector2::Zero(),
+                                             Vector2::Zero(), Vector2::Zero(), Vector2::Zero()};  // [m], by triangle
+    std::array<bool, MeshBar::size> held{};  // whether the triangle has a contact, touching or close
   };
   static constexpr bool first_evaluation_advances = false;
 
@@ -153,22 +154,7 @@ class LiggghtsScheme {
   void surface(World& w, SurfaceContact<SurfaceMemory>& contact, bool advance) {
     const Vector2& centre = w.particles.position[contact.i];
     const double radius = w.particles.radius[contact.i];
-    if (contact.surface == Surface::bar) {
-      std::array<bool, MeshBar::faces> touching{};
-      bar_->for_each_contact(centre, [&](std::size_t face, const MeshContact& at) {
-        const double gap = at.distance - radius;
-        if (gap > 0.0) return;
-        touching[face] = true;
-        double velocity = 0.0;  // of the wall, weighed as LIGGGHTS does: the weights need not sum to one
-        if (bar_velocity_ != 0.0)
-          velocity =
-              at.barycentric[0] * bar_velocity_ + at.barycentric[1] * bar_velocity_ + at.barycentric[2] * bar_velocity_;
-        touch(w, contact, -at.delta, -gap, {0.0, velocity}, contact.memory.shear[face], advance);
-      });
-      for (std::size_t face = 0; face < MeshBar::faces; ++face)
-        if (!touching[face]) contact.memory.shear[face].setZero();
-      return;
-    }
+    if (contact.surface == Surface::bar) return bar_contacts(w, contact, advance);
     const bool side = contact.surface != Surface::floor;
     const double at = side ? centre.x() : centre.y();
     const double wall = contact.surface == Surface::right ? w.surfaces.width : 0.0;
@@ -225,6 +211,37 @@ class LiggghtsScheme {
     return {push * normal + drag, normal.x() * drag.y() - normal.y() * drag.x()};
   }
 
+  /// Each triangle has its contact with its own shear spring. A disc that comes to lie over the other triangle of a
+  /// face takes it along, src/fix_contact_history_mesh_I.h; the first triangle of a face may then act beside the second
+  /// for a step, where the disc is so near to the line between them that it counts to both.
+  void bar_contacts(World& w, SurfaceContact<SurfaceMemory>& contact, bool advance) {
+    const Vector2& centre = w.particles.position[contact.i];
+    const double radius = w.particles.radius[contact.i];
+    SurfaceMemory& memory = contact.memory;
+    std::array<bool, MeshBar::size> kept{};
+    for (std::size_t k = 0; k < MeshBar::size; ++k) {
+      const std::optional<MeshContact> at = bar_->triangles()[k].contact(centre);
+      const double gap = at ? at->distance - radius : radius;
+      if (!at || (gap > 0.0 && gap >= close_share * radius)) continue;
+      const std::size_t other = MeshBar::other(k);
+      if (!memory.held[k]) {
+        if (at->on_face && kept[other]) continue;
+        memory.shear[k] = at->on_face && memory.held[other] ? memory.shear[other] : Vector2(Vector2::Zero());
+      }
+      kept[k] = true;
+      if (gap > 0.0) {
+        memory.shear[k].setZero();
+        continue;
+      }
+      double velocity = 0.0;  // of the wall, weighed as LIGGGHTS does: the weights need not sum to one
+      if (bar_velocity_ != 0.0)
+        velocity = at->barycentric[0] * bar_velocity_ + at->barycentric[1] * bar_velocity_ +
+                   at->barycentric[2] * bar_velocity_;
+      touch(w, contact, -at->delta, -gap, {0.0, velocity}, memory.shear[k], advance);
+    }
+    memory.held = kept;
+  }
+
   void touch(World& w, const SurfaceContact<SurfaceMemory>& contact, const Vector2& delta, double overlap,
              const Vector2& wall_velocity, Vector2& shear, bool advance) {
     Particles& p = w.particles;
@@ -267,6 +284,8 @@ class LiggghtsScheme {
       p.spin[i] += half_for_discs / (p.radius[i] * p.radius[i] * p.mass[i]) * w.loads[i].moment;
     }
   }
+
+  static constexpr double close_share = 1.1 - 1.0;  // of the radius: contact_distance_factor of the adapter's deck
 
   Motion motion_;
   bool limit_force_;

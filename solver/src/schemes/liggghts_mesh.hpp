@@ -125,7 +125,7 @@ class MeshTriangle {
 /// Left, right and bottom face in this order, two triangles each.
 class MeshBar {
  public:
-  static constexpr std::size_t faces = 3;
+  static constexpr std::size_t size = 6;
 
   /// `largest_radius` [m]: the triangles reach 1.6 of it to either side of the plane, as in the STL file of the
   /// adapter.
@@ -152,19 +152,10 @@ class MeshBar {
     for (MeshTriangle& triangle : triangles_) triangle.measure();
   }
 
-  /// Calls `act(face, contact)` for each face that the disc at `centre` is opposite of, or whose own edge it is.
-  template <class Act>
-  void for_each_contact(const Vector2& centre, Act act) const {
-    for (std::size_t face = 0; face < faces; ++face) {
-      bool on_face = false;
-      for (std::size_t k = 2 * face; k < 2 * face + 2; ++k) {
-        const std::optional<MeshContact> contact = triangles_[k].contact(centre);
-        if (!contact || (contact->on_face && on_face)) continue;  // a plane counts once
-        on_face = on_face || contact->on_face;
-        act(face, *contact);
-      }
-    }
-  }
+  [[nodiscard]] const std::vector<MeshTriangle>& triangles() const { return triangles_; }
+
+  /// The other triangle of the same face.
+  static std::size_t other(std::size_t triangle) { return triangle ^ 1U; }
 
  private:
   void add_face(const Vector2& start, const Vector2& end, double half, bool owns_start, bool owns_end) {
