@@ -14,6 +14,7 @@ import pandas as pd
 from statsmodels.stats.weightstats import DescrStatsW
 
 from crossdem.adapters.case import Case
+from crossdem.adapters.gates import REST
 
 from .checks import Check
 from .ingredients import Ingredient
@@ -30,26 +31,23 @@ class Station:
     ingredient: Ingredient
     values: pd.DataFrame  # one row per seed with a result, one column per quantity
     failures: dict[int, str]  # seed: why it has none
-    unrested: dict[
-        int, str
-    ]  # seed: what the gate on the rest says of a bed that did not come to rest
+    failed_gates: dict[str, dict[int, str]]  # gate: seed: what it says of a run that it refuses
+    unsupported: frozenset[int] = frozenset()  # those of failures that no engine is to blame for
+    manifests: tuple[dict, ...] = ()  # of the runs with a result
 
     @property
     def name(self) -> str:
         return self.ingredient.name
 
     @property
-    def remarks(self) -> list[str]:
-        """What a reader must know of its runs."""
-        seeds = len(self.values) + len(self.failures)
-        told = []
-        if self.failures:
-            first = next(iter(self.failures.values()))
-            told.append(f"no result in {len(self.failures)} of {seeds}: {first}")
-        if self.unrested:
-            first = next(iter(self.unrested.values())).removeprefix("not comparable: ")
-            told.append(f"in {len(self.unrested)} of {seeds} {first}")
-        return told
+    def seeds(self) -> frozenset[int]:
+        """All that it was run on."""
+        return frozenset(self.values.index) | frozenset(self.failures)
+
+    @property
+    def unrested(self) -> frozenset[int]:
+        """Seeds of the beds that did not come to rest."""
+        return frozenset(self.failed_gates.get(REST, {}))
 
 
 @dataclass(frozen=True)
@@ -58,15 +56,27 @@ class Change:
 
     check: Check
     name: str
-    against: str | None  # the station before it, with results; None: there is none
+    against: str | None  # the last station before it with results; None: there is none
+    over: tuple[str, ...]  # stations between the two, without results: this change is theirs, too
     seeds: tuple[int, ...]  # that both stations have
     mean: float  # NaN without seeds
     interval: tuple[float, float] | None  # None for fewer than two seeds
+    nothing: bool  # every difference is 0, to the last bit
+    restless: bool  # some bed of the two stations did not come to rest: its energy is in the change
+
+    @property
+    def leaves_out_zero(self) -> bool:
+        return self.interval is not None and not self.interval[0] <= 0 <= self.interval[1]
 
     @property
     def clear(self) -> bool:
-        """Whether the interval leaves out no change."""
-        return self.interval is not None and not self.interval[0] <= 0 <= self.interval[1]
+        """Whether the interval leaves out no change, on beds that rest."""
+        return self.leaves_out_zero and not self.restless
+
+    @property
+    def telling(self) -> bool:
+        """Whether it has an interval that chance decides about, on beds that rest."""
+        return self.interval is not None and not self.nothing and not self.restless
 
 
 @dataclass(frozen=True)
@@ -106,8 +116,33 @@ class Attribution:
     endpoints: tuple[Endpoint, ...]
 
     @property
+    def steps(self) -> list[Change]:
+        """Of all quantities."""
+        return [step for endpoint in self.endpoints for step in endpoint.steps]
+
+    @property
     def clear_steps(self) -> list[Change]:
-        return [step for endpoint in self.endpoints for step in endpoint.steps if step.clear]
+        return [step for step in self.steps if step.clear]
+
+    @property
+    def last_steps(self) -> list[Change]:
+        """From the native scheme to the engine itself, where there is a result."""
+        return [one.steps[-1] for one in self.endpoints if math.isfinite(one.steps[-1].mean)]
+
+    @property
+    def same_packings(self) -> bool:
+        """Whether every step was taken on every packing of the first station."""
+        return all(frozenset(step.seeds) == self.stations[0].seeds for step in self.steps)
+
+    @property
+    def has_total(self) -> bool:
+        return any(math.isfinite(endpoint.total.mean) for endpoint in self.endpoints)
+
+    @property
+    def engine_failed(self) -> bool:
+        """Whether a run failed that the total, or what the engine itself adds, would have needed."""
+        ends = (self.stations[0], *self.stations[-2:])
+        return any(set(station.failures) - station.unsupported for station in ends)
 
 
 def attribute(case: Case, target: str, stations: tuple[Station, ...]) -> Attribution:
@@ -126,29 +161,38 @@ def on_scale(check: Check, values: pd.Series, unit: float) -> pd.Series:
 def _endpoint(check: Check, stations: tuple[Station, ...]) -> Endpoint:
     quantity = check.quantity.name
     columns = [station.values[quantity].astype(float) for station in stations]
-    first = next((column for column in columns if len(column)), columns[0])
-    unit = abs(float(first.mean())) or math.nan
+    unit = abs(float(columns[0].mean())) or math.nan  # NaN where the first station has no result
     scaled = [on_scale(check, column, unit).dropna() for column in columns]
 
-    def change(name: str, start: int | None, end: int) -> Change:
+    def change(name: str, start: int | None, end: int, over: tuple[str, ...] = ()) -> Change:
         if start is None:
-            return Change(check, name, None, (), math.nan, None)
+            return Change(check, name, None, over, (), math.nan, None, False, False)
         paired = pd.concat([scaled[end], scaled[start]], axis="columns", join="inner").sort_index()
         differences = (paired.iloc[:, 0] - paired.iloc[:, 1]).to_numpy()
-        statistics = DescrStatsW(differences)
-        interval = None
-        if len(differences) >= 2:
-            interval = tuple(map(float, statistics.tconfint_mean(alpha=1 - CONFIDENCE)))
-        mean = float(statistics.mean) if len(differences) else math.nan
         seeds = tuple(int(seed) for seed in paired.index)
-        return Change(check, name, stations[start].name, seeds, mean, interval)
+        interval = None
+        if len(seeds) >= 2:
+            statistics = DescrStatsW(differences)
+            interval = tuple(map(float, statistics.tconfint_mean(alpha=1 - CONFIDENCE)))
+        return Change(
+            check=check,
+            name=name,
+            against=stations[start].name,
+            over=over,
+            seeds=seeds,
+            mean=float(differences.mean()) if seeds else math.nan,
+            interval=interval,
+            nothing=bool(seeds) and not differences.any(),
+            restless=not (stations[start].unrested | stations[end].unrested).isdisjoint(seeds),
+        )
 
     present = [number for number, column in enumerate(scaled) if len(column)]
-    steps = [
-        change(station.name, max((n for n in present if n < number), default=None), number)
-        for number, station in enumerate(stations)
-        if number > 0
-    ]
+    steps = []
+    for number in range(1, len(stations)):
+        start = max((n for n in present if n < number), default=None)
+        skipped = stations[number if start is None else start + 1 : number]
+        over = tuple(station.name for station in skipped) if number in present else ()
+        steps.append(change(stations[number].name, start, number, over))
     last_native = len(stations) - 2
     origin = 0 if 0 in present else None
     return Endpoint(

@@ -17,11 +17,13 @@ KNOWN = {
     "native": EngineStyle("#3b82d6", "o", ()),
     "liggghts": EngineStyle("#e0752d", "s", (6, 2)),
     "yade": EngineStyle("#1fa187", "^", (2, 1.5)),
+    "liggghts-averaged": EngineStyle("#b565c9", "D", (6, 2, 1.5, 2)),
+    "yade-averaged": EngineStyle("#c9a227", "v", (4, 1)),
 }
 OTHERS = (
-    EngineStyle("#b565c9", "D", (6, 2, 1.5, 2)),
-    EngineStyle("#c9a227", "v", (4, 1)),
     EngineStyle("#d1477a", "P", (1, 1)),
+    EngineStyle("#7d8590", "X", (8, 2)),
+    EngineStyle("#7a9a2e", "*", (3, 3)),
 )
 LAYERS = (
     "#c8a165",

@@ -15,7 +15,7 @@ from crossdem.adapters.workspace import Workspace
 from .comparison import case_faults, compare_runs, comparison_faults
 from .explain import explain_case
 from .horizon import Horizon
-from .horizon_runs import find_horizon
+from .horizon_runs import find_horizon, horizon_of_runs
 from .runs import Runs, run_engines, write_inputs
 from .stability import FAILED
 from .stability_runs import map_stability
@@ -30,8 +30,7 @@ def check(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
         return _check_ladder(case_file, engines, out, overrides, jobs)
     with _workspace(case, overrides, out) as workspace:
         runs = run_engines(case, engines, seeds, workspace, jobs, Console())
-        able = [engine for engine in engines if (engine, 1) not in runs.failures]
-        found = find_horizon(case, able, 1, workspace, jobs, Console()) if able else None
+        found = horizon_of_runs(case, engines, runs.failures, workspace, jobs, Console())
     datasets = [Dataset.read(folder) for folder in runs.folders]
     return _report(case, datasets, runs, workspace, found)
 
@@ -79,8 +78,9 @@ def explain(case_file, origin, target, seeds, engine_seeds, out, overrides, jobs
         )
         page = write_explanation(attribution, workspace.root / f"explain-{target}")
     print_explanation(attribution, page)
-    missing = not len(attribution.stations[-1].values)
-    return ExitCode.ENGINE_FAILED if missing else ExitCode.AGREES
+    if attribution.engine_failed:
+        return ExitCode.ENGINE_FAILED
+    return ExitCode.AGREES if attribution.has_total else ExitCode.INCONCLUSIVE
 
 
 def horizon(case_file, engines, seed, out, overrides, jobs) -> ExitCode:
@@ -91,9 +91,7 @@ def horizon(case_file, engines, seed, out, overrides, jobs) -> ExitCode:
         found = find_horizon(case, engines, seed, workspace, jobs, Console())
         page = write_horizon(case, found, workspace.root / "horizon")
     print_horizon(found, page)
-    if found.strays:
-        return ExitCode.DIFFERS
-    return ExitCode.ENGINE_FAILED if found.failures else ExitCode.AGREES
+    return found.exit_code
 
 
 def stability(case_file, steps_s, seeds, out, overrides, jobs) -> ExitCode:

@@ -14,8 +14,6 @@ from .ingredients import Ingredient, engine_itself, walk
 from .progress import ProgressDisplay
 from .variants import Variant, VariantRun, run_variants, settled
 
-REST_GATE = "rest_kinetic_energy_J"
-
 
 def explain_case(
     case: Case,
@@ -28,15 +26,11 @@ def explain_case(
 ) -> Attribution:
     """Walk on the packings of `seeds` seeds, with the engine itself on the first `engine_seeds` of them.
 
-    Raises CaseError for a case without checks, SolverError where packings cannot be made.
+    Raises CaseError for a case with nothing to explain, SolverError where packings cannot be made.
     """
+    if faults := unexplainable(case):
+        raise CaseError(faults)
     checks = Check.of_case(case.resolved)
-    if not checks:
-        raise CaseError(
-            [
-                f"{case.file_name}: check: the case has no [[check]] tables, which name what to explain"
-            ]
-        )
     steps = route(case, target)
     with ProgressDisplay(console) as display:
         packings = settled(case, seeds, workspace, jobs, display)
@@ -54,8 +48,37 @@ def explain_case(
     return attribute(case, target, stations)
 
 
+def unexplainable(case: Case) -> list[str]:
+    """What a walk needs and the case lacks: a fault line each."""
+    lacks = []
+    if case.resolved["particle"]:
+        lacks.append(
+            "particle: particles placed by hand are one packing, and no interval comes of one; take out the "
+            "[[particle]] tables, or run `crossdem check` on this case, which compares them particle by particle"
+        )
+    if not case.resolved.get("check"):
+        lacks.append("check: there are no [[check]] tables; add them, they name what to explain")
+    if "bar" not in case.resolved:
+        lacks.append("bar: there is no [bar]; add one, what is explained is its resistance")
+    return [f"{case.file_name}: {fault}" for fault in lacks]
+
+
 def route(case: Case, target: str) -> list[tuple[Ingredient, Variant]]:
-    """Each station of the walk with the case that it runs; the last is `case` itself in the engine `target`."""
+    """Each station of the walk with the case that it runs; the last is `case` itself in the engine `target`.
+
+    Raises CaseError for readings that the walk cannot be taken with.
+    """
+    try:
+        return _route(case, target)
+    except CaseError as error:
+        advice = (
+            f"{case.file_name}: scheme: explain starts from the paper's default readings: "
+            "take out --set scheme... and the readings in the case's [scheme]"
+        )
+        raise CaseError([advice, *error.faults]) from error
+
+
+def _route(case: Case, target: str) -> list[tuple[Ingredient, Variant]]:
     step_s = case.step_s(target)
     *mixed, native = walk(target)
     steps, taken = [], []
@@ -72,18 +95,25 @@ def route(case: Case, target: str) -> list[tuple[Ingredient, Variant]]:
 def station(ingredient: Ingredient, checks: list[Check], runs: list[VariantRun]) -> Station:
     """What `runs`, all of one variant, gave."""
     quantities = [check.quantity for check in checks]
-    values, unrested = {}, {}
+    values, manifests = {}, []
+    failed_gates: dict[str, dict[int, str]] = {}
     for run in runs:
         if run.folder:
             dataset = run.dataset()
+            manifests.append(dataset.manifest)
             values[run.packing.seed] = [quantity.of(dataset) for quantity in quantities]
-            unrested |= {
-                run.packing.seed: gate["message"]
-                for gate in dataset.manifest["gates"]
-                if gate["name"] == REST_GATE and not gate["passed"]
-            }
+            for gate in dataset.manifest["gates"]:
+                if not gate["passed"]:
+                    failed_gates.setdefault(gate["name"], {})[run.packing.seed] = gate["message"]
     table = pd.DataFrame.from_dict(
         values, orient="index", columns=[quantity.name for quantity in quantities], dtype=float
     )
-    failures = {run.packing.seed: run.failure for run in runs if not run.folder}
-    return Station(ingredient, table.rename_axis("seed"), failures, unrested)
+    failed = [run for run in runs if not run.folder]
+    return Station(
+        ingredient,
+        table.rename_axis("seed"),
+        failures={run.packing.seed: run.failure for run in failed},
+        failed_gates=failed_gates,
+        unsupported=frozenset(run.packing.seed for run in failed if run.unsupported),
+        manifests=tuple(manifests),
+    )

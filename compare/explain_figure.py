@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,12 +11,14 @@ from matplotlib.figure import Figure
 from .attribution import Attribution, Change, Endpoint
 from .checks import Check
 from .drawing import INK
+from .explain_tables import LEFT_OVER, change_rows
 from .wording import SHOWN_UNITS
 
 UP, DOWN, UNCLEAR = "#e0752d", "#3b82d6", "#8a8f98"  # an increase, a decrease, neither
 BAR_HEIGHT = 0.62
 WHOLE_FROM = 4  # packings from which on an interval is shown whole: that of fewer dwarfs all else
 GAP = 0.6  # between the steps and the sums of them
+NAME_LETTERS = 34  # of a line
 ROW_PX, FRAME_PX = 21, 92  # of a panel: each bar, and what stands around them
 
 
@@ -30,10 +33,21 @@ def draw_attribution(attribution: Attribution, columns: int, figure: Figure) -> 
     rows = math.ceil(len(attribution.endpoints) / columns)
     figure.get_layout_engine().set(h_pad=0.08)
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).flat
+    names = [row.name for row in change_rows(attribution) if row.name != LEFT_OVER]
     for panel, endpoint in zip(panels, attribution.endpoints):
-        _draw(panel, endpoint, attribution.target)
+        _draw(panel, endpoint, [textwrap.fill(name, NAME_LETTERS) for name in names])
     for unused in list(panels):
         unused.set_visible(False)
+
+
+def cut_off(attribution: Attribution) -> bool:
+    """Whether some interval is of too few packings to be shown whole beside others."""
+    return any(
+        change.interval and change not in _telling(changes)
+        for endpoint in attribution.endpoints
+        for changes in [_changes(endpoint)]
+        for change in changes
+    )
 
 
 def percent_or_unit(check: Check, change: float) -> float:
@@ -43,11 +57,9 @@ def percent_or_unit(check: Check, change: float) -> float:
     return change * (100 if check.kind == "relative" else _shown(check)[0])
 
 
-def _draw(panel: Axes, endpoint: Endpoint, target: str) -> None:
+def _draw(panel: Axes, endpoint: Endpoint, names: list[str]) -> None:
     check = endpoint.check
-    changes = [*endpoint.steps, endpoint.to_scheme, endpoint.total]
-    names = [step.name for step in endpoint.steps]
-    names += ["all, up to the native scheme", f"all, up to {target}"]
+    changes = _changes(endpoint)
     places = [float(row) for row in range(len(endpoint.steps))]
     places += [places[-1] + 1 + GAP, places[-1] + 2 + GAP]
     for place, change in zip(places, changes):
@@ -74,8 +86,7 @@ def _draw(panel: Axes, endpoint: Endpoint, target: str) -> None:
 
 def _limits(check: Check, changes: list[Change]) -> tuple[float, float]:
     """Of the axis: every bar, and every interval that says something."""
-    telling = [change for change in changes if len(change.seeds) >= WHOLE_FROM] or changes
-    ends = [end for change in telling for end in change.interval or ()]
+    ends = [end for change in _telling(changes) for end in change.interval or ()]
     shown = [percent_or_unit(check, end) for end in ends + [0.0]]
     shown += [
         percent_or_unit(check, change.mean) for change in changes if math.isfinite(change.mean)
@@ -83,6 +94,15 @@ def _limits(check: Check, changes: list[Change]) -> tuple[float, float]:
     low, high = min(shown), max(shown)
     room = 0.08 * (high - low) or 1.0
     return low - room, high + room
+
+
+def _changes(endpoint: Endpoint) -> list[Change]:
+    return [*endpoint.steps, endpoint.to_scheme, endpoint.total]
+
+
+def _telling(changes: list[Change]) -> list[Change]:
+    """Those whose intervals the axis has room for."""
+    return [change for change in changes if len(change.seeds) >= WHOLE_FROM] or changes
 
 
 def _colour(change: Change) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from dataclasses import asdict
 from pathlib import Path
 
 from markupsafe import Markup
@@ -13,9 +13,9 @@ from rich.text import Text
 from . import explain_tables as tables
 from .attribution import Attribution
 from .drawing import png_figure, svg_figure
-from .explain_figure import draw_attribution, size_px
-from .pages import render, write_whole
-from .record import libraries, plain
+from .explain_figure import cut_off, draw_attribution, size_px
+from .pages import write_finding
+from .provenance import provenance
 from .wording import plural, printable
 
 WIDE, NARROW = (4, 1140), (1, 400)  # columns of the chart, and its width in pixels
@@ -23,14 +23,16 @@ NAME_WIDTH, CELL_WIDTH = 30, 17  # of the terminal's tables, in letters
 
 
 def write_explanation(attribution: Attribution, folder: Path) -> Path:
-    """Write the four files into `folder`, each whole or not at all; returns the path of the page, written last."""
-    folder.mkdir(parents=True, exist_ok=True)
-    write_whole(folder / "explain.csv", tables.table(attribution).to_csv(index=False).encode())
-    text = json.dumps(_record(attribution), indent=2, ensure_ascii=False, allow_nan=False)
-    write_whole(folder / "explain.json", (text + "\n").encode())
-    write_whole(folder / "explain.png", _chart(attribution, png_figure, *WIDE))
-    write_whole(folder / "explain.html", render("explain.html", _values(attribution)).encode())
-    return folder / "explain.html"
+    """Write the four files into `folder`; returns the path of the page."""
+    return write_finding(
+        attribution.case,
+        folder,
+        "explain",
+        tables.table(attribution),
+        _record(attribution),
+        _chart(attribution, png_figure, *WIDE),
+        _values(attribution),
+    )
 
 
 def print_explanation(attribution: Attribution, page: Path, console: Console | None = None) -> None:
@@ -54,7 +56,7 @@ def print_explanation(attribution: Attribution, page: Path, console: Console | N
         console.print(table)
         console.print()
     for station in attribution.stations:
-        for remark in station.remarks:
+        for remark in tables.remarks(station):
             console.print(Text(printable(f"{station.name}: {remark}"), style="magenta"))
     console.print(Text(tables.headline(attribution), style="bold"))
     for sentence in tables.sentences(attribution):
@@ -65,25 +67,30 @@ def print_explanation(attribution: Attribution, page: Path, console: Console | N
 def _values(attribution: Attribution) -> dict:
     """What the page shows."""
     stations = attribution.stations
-    seeds, engine_seeds = (len(s.values) + len(s.failures) for s in (stations[0], stations[-1]))
+    seeds, engine_seeds = len(stations[0].seeds), len(stations[-1].seeds)
     fewer = f", {attribution.target} itself on {engine_seeds}" if engine_seeds < seeds else ""
     return {
-        "title": attribution.case.resolved["title"],
-        "case": attribution.case,
         "headline": tables.headline(attribution),
         "sentences": tables.sentences(attribution),
         "stations": stations,
-        "remarks": [(station.name, remark) for station in stations for remark in station.remarks],
+        "remarks": [(one.name, remark) for one in stations for remark in tables.remarks(one)],
         "checks": [endpoint.check for endpoint in attribution.endpoints],
         "change_rows": tables.change_rows(attribution),
+        "restless": any(change.restless for change in attribution.steps),
+        "cut_off": cut_off(attribution),
         "value_rows": tables.value_rows(attribution),
         "step_s": attribution.case.step_s(attribution.target),
         "chart_wide": Markup(_chart(attribution, svg_figure, *WIDE)),
         "chart_narrow": Markup(_chart(attribution, svg_figure, *NARROW)),
         "seeds": plural(seeds, "packing"),
         "engine_seeds": fewer,
-        "libraries": libraries(),
+        "provenance": provenance(manifests(attribution)),
     }
+
+
+def manifests(attribution: Attribution) -> list[dict]:
+    """Of all runs."""
+    return [manifest for station in attribution.stations for manifest in station.manifests]
 
 
 def _chart(attribution: Attribution, render_figure, columns: int, width_px: int):
@@ -96,30 +103,24 @@ def _chart(attribution: Attribution, render_figure, columns: int, width_px: int)
 
 def _record(attribution: Attribution) -> dict:
     """Every number, for other programs."""
-    case = attribution.case
-    return plain(
-        {
-            "schema_version": 1,
-            "case": {"name": case.name, "title": case.resolved["title"], "hash": case.hash},
-            "target": attribution.target,
-            "headline": tables.headline(attribution),
-            "sentences": tables.sentences(attribution),
-            "stations": [
-                {
-                    "name": station.name,
-                    "says": station.ingredient.says,
-                    "overrides": station.ingredient.overrides,
-                    "values": station.values.reset_index().to_dict("records"),
-                    "failures": station.failures,
-                    "unrested": station.unrested,
-                }
-                for station in attribution.stations
-            ],
-            "changes": tables.table(attribution).to_dict("records"),
-            "left_over": {
-                endpoint.check.quantity.name: endpoint.left_over
-                for endpoint in attribution.endpoints
-            },
-            "libraries": libraries(),
-        }
-    )
+    return {
+        "target": attribution.target,
+        "headline": tables.headline(attribution),
+        "sentences": tables.sentences(attribution),
+        "stations": [
+            {
+                "name": station.name,
+                "says": station.ingredient.says,
+                "overrides": station.ingredient.overrides,
+                "values": station.values.reset_index().to_dict("records"),
+                "failures": station.failures,
+                "failed_gates": station.failed_gates,
+            }
+            for station in attribution.stations
+        ],
+        "changes": tables.table(attribution).to_dict("records"),
+        "left_over": {
+            endpoint.check.quantity.name: endpoint.left_over for endpoint in attribution.endpoints
+        },
+        "provenance": asdict(provenance(manifests(attribution))),
+    }

@@ -13,9 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from crossdem import ExitCode
 from crossdem.adapters.dataset import Dataset
 
+from . import checks
 from .wording import metres
+
+FAILED = "failed"  # an outcome beside those of checks
 
 # Of one particle of the twin: far above the rounding of a coordinate, a billionth of a radius.
 SHIFT_M = 1e-12
@@ -25,6 +29,8 @@ LOST_SHARE = 0.01  # of the smallest radius: the drift at the horizon
 FIT_M = (10 * SHIFT_M, 1e-6)
 
 COMPARED_S = 0.1  # from the packing on, each engine against the native scheme of its name
+# Of the time in which the native scheme's twin is noticed: an engine's own may not be noticed before.
+EARLY_SHARE = 0.5
 # Largest difference allowed there: rounding, grown by the same chaos, stays far below.
 LIMIT_M = 1e-9
 
@@ -48,8 +54,11 @@ class Growth:
         return crossing_s(self.time_s, self.drift_m, self.lost_m)
 
     @property
-    def rate_1_s(self) -> tuple[float, float] | None:
-        """Exponential rate of growth [1/s] and its standard error, by least squares within FIT_M; None: too few frames."""
+    def rate_1_s(self) -> float | None:
+        """Exponential rate of growth [1/s], by least squares within FIT_M; None: too few frames.
+
+        No error goes with it: the frames of one twin are not independent of each other.
+        """
         low, high = (crossing_s(self.time_s, self.drift_m, level) for level in FIT_M)
         if low is None:
             return None
@@ -58,7 +67,7 @@ class Growth:
         if np.count_nonzero(within) < 3:
             return None
         line = stats.linregress(self.time_s[within], np.log(self.drift_m[within]))
-        return float(line.slope), float(line.stderr)
+        return float(line.slope)
 
 
 @dataclass(frozen=True)
@@ -71,14 +80,23 @@ class Closeness:
     until_s: float  # the comparison counts up to here
 
     @property
+    def frames(self) -> int:
+        """How many count; the one at t = 0 is what both were given."""
+        return int(np.count_nonzero((self.time_s > 0) & self._counts))
+
+    @property
     def largest_m(self) -> float:
-        return float(self.difference_m[self.time_s <= self.until_s].max())
+        return float(self.difference_m[self._counts].max())
 
     @property
     def beyond_s(self) -> float | None:
         """Time of the first frame beyond LIMIT_M; None: there is none."""
-        beyond = (self.time_s <= self.until_s) & (self.difference_m > LIMIT_M)
+        beyond = self._counts & (self.difference_m > LIMIT_M)
         return float(self.time_s[np.argmax(beyond)]) if beyond.any() else None
+
+    @property
+    def _counts(self) -> np.ndarray:
+        return self.time_s <= self.until_s
 
 
 @dataclass(frozen=True)
@@ -87,20 +105,52 @@ class EngineHorizon:
 
     engine: str
     growth: Growth | None = None  # None: `obstacle` says why
-    closeness: Closeness | None = None  # None: no native scheme has its name, or `obstacle`
+    closeness: Closeness | None = None  # None: nothing to be compared with, or `obstacle`
     obstacle: str | None = None
     failed: bool = False  # the obstacle is a run that failed; else it is no fault of the engine
+    scheme_growth: Growth | None = None  # of the native scheme of its name, as far as there is one
+
+    @property
+    def outcome(self) -> str | None:
+        """A word of checks, or FAILED; None: it has grown, and there is nothing for it to agree with."""
+        if self.failed:
+            return FAILED
+        if self.stray:
+            return checks.DIFFERS
+        if self.reason:
+            return checks.NOT_COMPARABLE
+        return checks.AGREES if self.closeness else None
+
+    @property
+    def reason(self) -> str | None:
+        """Why nothing can be said of its agreement; None: something can, or it was never asked."""
+        if self.obstacle or self.closeness is None or self.closeness.frames:
+            return self.obstacle
+        return (
+            f"no frame after the packing and before {self.closeness.until_s:.2g} s, to which its native scheme's "
+            f"twin limits the comparison"
+        )
 
     @property
     def stray(self) -> str | None:
         """The sentence that names engine and time, where it differs before the horizon."""
         close = self.closeness
-        if close is None or close.beyond_s is None:
+        if close is None:
+            return None
+        if close.beyond_s is not None:
+            return (
+                f"{self.engine} leaves the native scheme {close.scheme!r} at t = {close.beyond_s:.3g} s after the "
+                f"packing, before the horizon: a particle is up to {metres(close.largest_m)} off by "
+                f"{close.until_s:.3g} s, where {metres(LIMIT_M)} are allowed"
+            )
+        own_s, usual_s = self.growth.noticed_s, self.scheme_growth and self.scheme_growth.noticed_s
+        if self.scheme_growth and usual_s is None:
+            usual_s = float(self.scheme_growth.time_s[-1])  # or later
+        if own_s is None or usual_s is None or own_s >= EARLY_SHARE * usual_s:
             return None
         return (
-            f"{self.engine} leaves the native scheme {close.scheme!r} at t = {close.beyond_s:.3g} s after the "
-            f"packing, before the horizon: a particle is up to {metres(close.largest_m)} off by {close.until_s:.3g} s, "
-            f"where {metres(LIMIT_M)} are allowed"
+            f"{self.engine} makes {metres(NOTICED_M)} of a shift of {metres(SHIFT_M)} within {own_s:.3g} s, the native "
+            f"scheme {close.scheme!r} not before {usual_s:.3g} s: it is less stable than what it is compared with"
         )
 
 
@@ -111,15 +161,29 @@ class Horizon:
     seed: int
     recorded_s: float
     engines: tuple[EngineHorizon, ...]
+    runs: tuple[
+        dict, ...
+    ] = ()  # provenance: RUN_FACTS of each run behind it, and its name as `run`
 
     @property
     def strays(self) -> list[str]:
-        return [one.stray for one in self.engines if one.stray]
+        return [one.stray for one in self.engines if one.outcome == checks.DIFFERS]
 
     @property
     def failures(self) -> dict[tuple[str, int], str]:
         """As a comparison has them: (engine, seed): why."""
         return {(one.engine, self.seed): one.obstacle for one in self.engines if one.failed}
+
+    @property
+    def exit_code(self) -> ExitCode:
+        """An engine that was not compared never counts as agreement; the native solver alone only measures."""
+        if self.strays:
+            return ExitCode.DIFFERS
+        if self.failures:
+            return ExitCode.ENGINE_FAILED
+        compared = [one.outcome for one in self.engines if one.outcome or not one.growth]
+        agree = all(outcome == checks.AGREES for outcome in compared)
+        return ExitCode.AGREES if agree else ExitCode.INCONCLUSIVE
 
 
 def growth(run: Dataset, twin: Dataset) -> Growth:
@@ -127,9 +191,12 @@ def growth(run: Dataset, twin: Dataset) -> Growth:
     return Growth(run.motion.time_s, drift_m(run, twin), lost_m)
 
 
-def closeness(run: Dataset, native: Dataset, scheme: str, own: Growth) -> Closeness:
-    """`run` against the `native` scheme, no longer than its `own` twin stays below NOTICED_M."""
-    until_s = min(COMPARED_S, float(run.motion.time_s[-1]), own.noticed_s or math.inf)
+def closeness(run: Dataset, native: Dataset, scheme: str, usual: Growth) -> Closeness:
+    """`run` against the `native` scheme, until that scheme's twin, of the growth `usual`, reaches NOTICED_M.
+
+    The twin of `run` itself has no say: a fault that makes an engine unstable would end the search for it.
+    """
+    until_s = min(COMPARED_S, float(run.motion.time_s[-1]), usual.noticed_s or math.inf)
     return Closeness(scheme, run.motion.time_s, drift_m(run, native), until_s)
 
 

@@ -1,4 +1,4 @@
-"""The growth of a 1e-12 m disturbance in each engine, and its difference to the native scheme of its name."""
+"""The growth of a tiny disturbance in each engine, and its difference to the native scheme of its name."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from .colours import engine_styles
 from .drawing import INK
-from .horizon import LIMIT_M, Horizon
+from .horizon import LIMIT_M, LOST_SHARE, Horizon
 from .wording import metres
 
 LEAST_M = 1e-18  # below what doubles resolve here; what is equal to the last bit lies on this line
@@ -42,7 +42,7 @@ def draw_growth(horizon: Horizon, axes: Axes, legend: bool = False) -> None:
     levels = [(LIMIT_M, f"limit, {metres(LIMIT_M)}")]
     lost_m = next((one.growth.lost_m for one in horizon.engines if one.growth), None)
     if lost_m is not None:
-        levels.append((lost_m, "horizon, 1 % of a radius"))
+        levels.append((lost_m, f"horizon, {100 * LOST_SHARE:g} % of a radius"))
     for level_m, says in levels:
         axes.axhline(level_m, color=INK, linewidth=0.8, linestyle="--", alpha=0.7)
         axes.text(0.01 * horizon.recorded_s, level_m * 1.5, says, fontsize=8, alpha=0.85)

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from crossdem import ExitCode
 from crossdem.adapters.case import Case
 
 from . import horizon_tables as tables
@@ -22,11 +23,21 @@ from .pages import render, write_whole
 from .record import libraries, plain
 from .wording import printable
 
+# How the sentence looks, by the exit code: classes of report.css.
+TONES = {
+    ExitCode.AGREES: "finding",
+    ExitCode.DIFFERS: "differs",
+    ExitCode.ENGINE_FAILED: "failed",
+    ExitCode.INCONCLUSIVE: "inconclusive",
+}
 WIDE_PX, NARROW_PX = (900, 420), (380, 340)
 
 
 def write_horizon(case: Case, horizon: Horizon, folder: Path) -> Path:
-    """Write the four files into `folder`, each whole or not at all; returns the path of the page, written last."""
+    """Write the files into `folder`, each whole or not at all, the picture only where there are curves.
+
+    Returns the path of the page, written last.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / "horizon.csv", tables.curves(horizon).to_csv(index=False).encode())
     about = {"name": case.name, "title": case.resolved["title"], "hash": case.hash}
@@ -34,15 +45,19 @@ def write_horizon(case: Case, horizon: Horizon, folder: Path) -> Path:
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     write_whole(folder / "horizon.json", (text + "\n").encode())
     draw = partial(draw_growth, horizon)
-    picture = png_figure(lambda figure: draw(figure.add_subplot(), legend=True), WIDE_PX)
-    write_whole(folder / "horizon.png", picture)
+    if _has_curves(horizon):
+        picture = png_figure(lambda figure: draw(figure.add_subplot(), legend=True), WIDE_PX)
+        write_whole(folder / "horizon.png", picture)
+    else:
+        (folder / "horizon.png").unlink(missing_ok=True)
     engines = [one.engine for one in horizon.engines]
     values = {
         "horizon": page_values(horizon),
         "title": case.resolved["title"],
         "case": case,
-        "tone": "differs" if horizon.strays else "finding",
+        "tone": TONES[horizon.exit_code],
         "engines": engines,
+        "runs": horizon.runs,
         "colours": {name: style.colour for name, style in engine_styles(engines).items()},
         "libraries": libraries(),
     }
@@ -51,7 +66,9 @@ def write_horizon(case: Case, horizon: Horizon, folder: Path) -> Path:
 
 
 def page_values(horizon: Horizon) -> dict:
-    """What any page shows of a horizon."""
+    """What any page shows of a horizon; without curves there are no pictures of them."""
+    if not _has_curves(horizon):
+        return tables.values(horizon) | {"growth_wide": "", "growth_narrow": ""}
     draw = partial(draw_growth, horizon)
     return tables.values(horizon) | {
         "growth_wide": Markup(svg(draw, WIDE_PX)),
@@ -62,14 +79,7 @@ def page_values(horizon: Horizon) -> dict:
 def print_horizon(horizon: Horizon, page: Path, console: Console | None = None) -> None:
     console = console or Console()
     table = Table(box=None, pad_edge=False, header_style="dim")
-    for title in (
-        "engine",
-        "outcome",
-        "difference to its native scheme",
-        "growth",
-        "twin 1e-9 m off",
-        "horizon",
-    ):
+    for title in tables.COLUMNS:
         table.add_column(title)
     for row in tables.rows(horizon):
         table.add_row(*(Text(printable(cell)) for cell in row[:-1]))
@@ -79,3 +89,7 @@ def print_horizon(horizon: Horizon, page: Path, console: Console | None = None) 
             console.print(Text(printable(f"{row.engine}: {row.remark}"), style="dim"))
     console.print(Text(printable(tables.sentence(horizon)), style="bold"))
     console.print(Text(f"Report: {page}"), soft_wrap=True)
+
+
+def _has_curves(horizon: Horizon) -> bool:
+    return any(one.growth for one in horizon.engines)

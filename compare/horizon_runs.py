@@ -1,27 +1,32 @@
-"""The runs behind the horizon: each engine from the packing and from its twin, and the native schemes of their names."""
+"""The runs behind the horizon: each engine and the native scheme of its name, from the packing and from its twin."""
 
 from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Sequence
+import traceback
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from rich.console import Console
 
-from crossdem.adapters.case import Case, varied
+from crossdem.adapters.case import Case, CaseError, varied
 from crossdem.adapters.engines import get_engine
 from crossdem.adapters.packing import Packing, make_packing
 from crossdem.adapters.workspace import Workspace
 
-from .horizon import SHIFT_M, EngineHorizon, Horizon, closeness, growth
+from .comparison import in_order
+from .horizon import COMPARED_S, SHIFT_M, EngineHorizon, Horizon, closeness, growth
 from .progress import ProgressDisplay
+from .twin_schemes import TWIN_SCHEMES, native_twin
 from .variants import Variant, VariantRun, run_variants
 
+SEED = 1  # of the packing on which a check compares particle by particle
 RECORDED_S = 1.0  # a shift of 1e-12 m reaches the horizon after half of it
 FRAME_S = 0.01
-# The native scheme that does what an engine does, step by step.
-SCHEMES = {"liggghts": "liggghts", "yade": "yade", "yade-averaged": "yade_averaged"}
+LEAST_FRAMES = 5  # within COMPARED_S, or the whole record where that is shorter
+RUN_FACTS = ("engine_version", "time_step_s", "packing_hash", "run_key")  # of a run's manifest
 
 
 def find_horizon(
@@ -33,9 +38,44 @@ def find_horizon(
     console: Console,
 ) -> Horizon:
     """Run what is needed on the packing of `seed`, and measure. Raises CaseError, SolverError where there is no packing."""
+    _refuse_unsettled(case)
     packing = make_packing(case, seed, workspace.packing_folder(case, seed))
     with ProgressDisplay(console) as display:
-        return _measure(case, engines, packing, workspace, jobs, display)
+        return _measure(case, in_order(engines), packing, workspace, jobs, display)
+
+
+def horizon_of_runs(
+    case: Case,
+    engines: Sequence[str],
+    failures: Mapping[tuple[str, int], str],
+    workspace: Workspace,
+    jobs: int,
+    console: Console,
+) -> Horizon:
+    """What find_horizon finds on seed 1 for the engines that finished it; `failures` as in Runs. Raises nothing.
+
+    Whatever happens here, the runs behind it are finished, and their report is owed.
+    """
+    skipped = {
+        name: EngineHorizon(name, obstacle=f"seed {SEED} has no result: {failures[name, SEED]}")
+        for name in engines
+        if (name, SEED) in failures
+    }
+    able = [name for name in engines if name not in skipped]
+    found = Horizon(SEED, 0.0, ())
+    if able:
+        try:
+            found = find_horizon(case, able, SEED, workspace, jobs, console)
+        except CaseError as error:
+            why = "; ".join(error.faults)
+            found = Horizon(SEED, 0.0, tuple(EngineHorizon(name, obstacle=why) for name in able))
+        except Exception as error:
+            traceback.print_exc()
+            why = f"{type(error).__name__}: {error}"
+            lost = tuple(EngineHorizon(name, obstacle=why, failed=True) for name in able)
+            found = Horizon(SEED, 0.0, lost)
+    every = skipped | {one.engine: one for one in found.engines}
+    return replace(found, engines=tuple(every[name] for name in in_order(engines)))
 
 
 def _measure(
@@ -47,35 +87,63 @@ def _measure(
     display: ProgressDisplay,
 ) -> Horizon:
     start = from_packing(case)
-    twin = shifted(packing, workspace)
-    unable = {name: reasons for name in engines if (reasons := get_engine(name).unsupported(start))}
-    able = [name for name in engines if name not in unable]
-    variants = {name: Variant(f"{name} from the packing", start, name) for name in able}
-    twins = {name: Variant(f"{name} from its twin", start, name) for name in able}
-    schemes = {name: native_scheme(start, name) for name in able if name in SCHEMES}
-    pairs = [(variant, packing) for variant in (*variants.values(), *schemes.values())]
-    pairs += [(variant, twin) for variant in twins.values()]
-    display.say(f"{len(pairs)} short runs for the horizon")
-    runs = {run.variant.name: run for run in run_variants(case, pairs, workspace, jobs, display)}
-    found = []
+    variants, found = {}, {}
     for name in engines:
-        if name in unable:
-            found.append(EngineHorizon(name, obstacle="; ".join(unable[name])))
-            continue
-        native = runs[schemes[name].name] if name in schemes else None
-        found.append(_measured(name, runs[variants[name].name], runs[twins[name].name], native))
-    return Horizon(packing.seed, start.resolved["time"]["penetration_s"], tuple(found))
+        if reasons := get_engine(name).unsupported(start):
+            found[name] = EngineHorizon(name, obstacle="; ".join(reasons))
+        else:
+            variants[name] = Variant(name, start, name)
+    schemes = {name: _native_scheme(start, name) for name in variants if name in TWIN_SCHEMES}
+    wanted = [*variants.values(), *(one for one in schemes.values() if isinstance(one, Variant))]
+    twin = shifted(packing, workspace)
+    pairs = [(variant, packing) for variant in wanted]
+    pairs += [(replace(one, name=f"{one.name} from the twin"), twin) for one in wanted]
+    display.say(f"{len(pairs)} short runs for the horizon")
+    done = run_variants(case, pairs, workspace, jobs, display)
+    runs = {variant.name: pair for variant, *pair in zip(wanted, done, done[len(wanted) :])}
+    for name, variant in variants.items():
+        scheme = schemes.get(name)
+        native = runs[scheme.name] if isinstance(scheme, Variant) else scheme
+        found[name] = _measured(name, runs[name], native)
+    return Horizon(
+        packing.seed,
+        start.resolved["time"]["penetration_s"],
+        tuple(found[name] for name in engines),
+        tuple(_facts(run) for run in done if run.folder),
+    )
+
+
+def _refuse_unsettled(case: Case) -> None:
+    """The runs go without rest. Raises CaseError where the case places its particles by hand, to settle in it."""
+    resolved = case.resolved
+    if resolved["particle"] and "bar" in resolved and resolved["time"]["rest_s"] > 0:
+        raise CaseError(
+            [
+                f"{case.file_name}: time.rest_s: the horizon starts from the particles as they are placed, without "
+                f"rest, and the bar may stand where they still are; `crossdem check` compares them rung by rung"
+            ]
+        )
 
 
 def from_packing(case: Case) -> Case:
-    """The case from its packing on, without rest, for RECORDED_S at most."""
+    """The case from its packing on, without rest, for RECORDED_S at most, in frames of about FRAME_S or less.
+
+    A frame comes after a whole number of each engine's time steps, as the interval between samples does: it is a
+    multiple of the smallest part of that interval which all time steps divide.
+    """
     time = case.resolved["time"]
-    frame_s = max(1, round(FRAME_S / time["sample_interval_s"])) * time["sample_interval_s"]
-    frame_s = min(frame_s, time["penetration_s"])
-    frames = max(1, math.floor(min(RECORDED_S, time["penetration_s"]) / frame_s + 1e-9))
+    recorded_s = min(RECORDED_S, time["penetration_s"])
+    steps_s = [
+        time["step_s"],
+        *(one["step_s"] for one in case.resolved.get("engines", {}).values()),
+    ]
+    parts = math.gcd(*(round(time["sample_interval_s"] / step_s) for step_s in steps_s))
+    most_s = min(FRAME_S, COMPARED_S / LEAST_FRAMES, recorded_s / LEAST_FRAMES)
+    taken = max(1, math.floor(most_s * parts / time["sample_interval_s"] * (1 + 1e-9)))
+    frame_s = time["sample_interval_s"] * taken / parts
     values = {
         "rest_s": 0.0,
-        "penetration_s": frames * frame_s,
+        "penetration_s": math.floor(recorded_s / frame_s * (1 + 1e-9)) * frame_s,
         "sample_interval_s": frame_s,
         "frame_interval_s": frame_s,
     }
@@ -96,20 +164,36 @@ def shifted(packing: Packing, workspace: Workspace) -> Packing:
     return Packing.read(folder)
 
 
-def native_scheme(start: Case, engine: str) -> Variant:
-    """What `engine` is compared with: the native solver under the scheme of its name, at its time step."""
-    changes = [f"scheme.name={SCHEMES[engine]}", f"time.step_s={start.step_s(engine)!r}"]
-    return Variant(f"native scheme {SCHEMES[engine]} from the packing", varied(start, changes))
+def _native_scheme(start: Case, engine: str) -> Variant | str:
+    """What `engine` is compared with: the native solver in the scheme of its name; or why there is none."""
+    try:
+        return Variant(f"native scheme {TWIN_SCHEMES[engine]}", native_twin(start, engine))
+    except CaseError as error:
+        return f"no native twin: {'; '.join(error.faults)}"
 
 
 def _measured(
-    engine: str, run: VariantRun, twin: VariantRun, native: VariantRun | None
+    engine: str, own: Sequence[VariantRun], native: Sequence[VariantRun] | str | None
 ) -> EngineHorizon:
-    for needed in filter(None, (run, twin, native)):
-        if needed.failure:
-            return EngineHorizon(engine, obstacle=needed.failure, failed=True)
-    whole = run.dataset()
-    own = growth(whole, twin.dataset())
-    if native is None:
-        return EngineHorizon(engine, own)
-    return EngineHorizon(engine, own, closeness(whole, native.dataset(), SCHEMES[engine], own))
+    """From the two runs of an engine and of its native scheme, each from the packing and from its twin."""
+    if failure := _failure(own):
+        return EngineHorizon(engine, obstacle=failure, failed=True)
+    run, twin = (one.dataset() for one in own)
+    grown = growth(run, twin)
+    if native is None or isinstance(native, str):
+        return EngineHorizon(engine, grown, obstacle=native)
+    if failure := _failure(native):
+        return EngineHorizon(engine, grown, obstacle=f"its native scheme: {failure}", failed=True)
+    scheme_run, scheme_twin = (one.dataset() for one in native)
+    usual = growth(scheme_run, scheme_twin)
+    close = closeness(run, scheme_run, TWIN_SCHEMES[engine], usual)
+    return EngineHorizon(engine, grown, close, scheme_growth=usual)
+
+
+def _failure(runs: Sequence[VariantRun]) -> str | None:
+    return next((run.failure for run in runs if run.failure), None)
+
+
+def _facts(run: VariantRun) -> dict:
+    manifest = run.dataset().manifest
+    return {"run": run.variant.name} | {key: manifest[key] for key in RUN_FACTS}

@@ -6,25 +6,42 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from . import wording
-from .horizon import COMPARED_S, LIMIT_M, LOST_SHARE, NOTICED_M, SHIFT_M, EngineHorizon, Horizon
+from . import checks, wording
+from .horizon import (
+    COMPARED_S,
+    EARLY_SHARE,
+    LIMIT_M,
+    LOST_SHARE,
+    NOTICED_M,
+    SHIFT_M,
+    EngineHorizon,
+    Horizon,
+)
 
 DASH = "\N{EN DASH}"
-NOT_COMPARABLE = "not comparable"
+COLUMNS = (
+    "engine",
+    "outcome",
+    "difference to its native scheme",
+    "growth",
+    f"twin {wording.metres(NOTICED_M)} off",
+    "horizon",
+)
 DEFINITION = (
     f"Twin: the same packing with one particle shifted by {wording.metres(SHIFT_M)}. Horizon: when any particle is "
     f"{100 * LOST_SHARE:g} % of the smallest radius away from its place in the twin run; before it, codes that do the "
     f"same steps can be compared particle by particle, after it only statistically. Each engine must stay within "
-    f"{wording.metres(LIMIT_M)} of the native scheme of its name for {COMPARED_S:g} s from the packing, or as long as its twin "
-    f"stays within {wording.metres(NOTICED_M)}."
+    f"{wording.metres(LIMIT_M)} of the native scheme of its name for {COMPARED_S:g} s from the packing, or as long as the "
+    f"twin of that scheme stays within {wording.metres(NOTICED_M)}; its own twin may not leave that in less than "
+    f"{100 * EARLY_SHARE:g} % of the time that the scheme's takes."
 )
 
 
 class Row(NamedTuple):
-    """One engine."""
+    """One engine: COLUMNS, and a remark."""
 
     engine: str
-    outcome: str  # agrees, differs, not comparable, or a dash where there is nothing to agree with
+    outcome: str  # of the engine, or a dash where there is nothing to agree with
     difference: str  # to the native scheme of its name
     rate: str
     noticed: str
@@ -36,8 +53,10 @@ def values(horizon: Horizon) -> dict:
     """What any text shows of a horizon."""
     return {
         "seed": horizon.seed,
+        "shift": wording.metres(SHIFT_M),
         "sentence": sentence(horizon),
         "definition": DEFINITION,
+        "columns": COLUMNS,
         "rows": rows(horizon),
     }
 
@@ -50,25 +69,36 @@ def sentence(horizon: Horizon) -> str:
     """What was found, in one go."""
     if horizon.strays:
         return "; ".join(horizon.strays) + "."
-    compared = [one for one in horizon.engines if one.closeness]
-    ends = [one.growth.horizon_s for one in horizon.engines if one.growth]
-    when = "Nothing could be measured"
-    if ends:
-        known = [end for end in ends if end is not None]
-        when = (
-            f"Particle by particle a comparison means something up to {min(known):.2g} s after the packing"
-            if known
-            else f"Within the {horizon.recorded_s:.3g} s recorded no run comes to its horizon"
+    parts = [f"On the packing of seed {horizon.seed}, {_reach(horizon)}"]
+    compared = [one for one in horizon.engines if one.outcome == checks.AGREES]
+    if compared:
+        names = wording.listed([one.engine for one in compared])
+        does = f"{names} does" if len(compared) == 1 else f"each of {names} does"
+        until_s = min(one.closeness.until_s for one in compared)
+        largest_m = max(one.closeness.largest_m for one in compared)
+        parts.append(
+            f"until {until_s:.2g} s {does} what the native scheme of its name does, to {_metres(largest_m)}"
         )
-    if not compared:
-        return f"{when}."
-    largest = max(compared, key=lambda one: one.closeness.largest_m)
-    names = wording.listed([one.engine for one in compared])
-    verb = "does" if len(compared) == 1 else "do"
-    return (
-        f"{when}; until {largest.closeness.until_s:.2g} s {names} {verb} what the native scheme of that name does, "
-        f"to {_metres(largest.closeness.largest_m)}."
-    )
+    else:
+        parts.append("no engine was compared")
+    silent = [
+        one for one in horizon.engines if one.obstacle or one.outcome == checks.NOT_COMPARABLE
+    ]
+    parts += [f"{one.engine}: {one.outcome}, {(one.reason or '').rstrip('.')}" for one in silent]
+    return "; ".join(parts) + "."
+
+
+def _reach(horizon: Horizon) -> str:
+    """Up to when a comparison means something: until the first horizon of any engine or native scheme."""
+    grown = [
+        growth for one in horizon.engines for growth in (one.growth, one.scheme_growth) if growth
+    ]
+    if not grown:
+        return "nothing could be measured"
+    known = [growth.horizon_s for growth in grown if growth.horizon_s is not None]
+    if not known:
+        return f"no run comes to its horizon within the {horizon.recorded_s:.3g} s recorded"
+    return f"particle by particle a comparison means something up to {min(known):.2g} s"
 
 
 def curves(horizon: Horizon) -> pd.DataFrame:
@@ -97,23 +127,26 @@ def record(horizon: Horizon) -> dict:
         "recorded_s": horizon.recorded_s,
         "shift_m": SHIFT_M,
         "limit_m": LIMIT_M,
+        "noticed_m": NOTICED_M,
+        "runs": list(horizon.runs),
         "engines": [_record(one) for one in horizon.engines],
     }
 
 
 def _row(one: EngineHorizon, recorded_s: float) -> Row:
+    outcome, remark = one.outcome or DASH, one.stray or one.reason or ""
+    if not one.outcome:
+        remark = "compared with its own twin only"
     if one.growth is None:
-        return Row(one.engine, NOT_COMPARABLE, *[DASH] * 4, one.obstacle or "")
-    close, rate = one.closeness, one.growth.rate_1_s
-    outcome, difference, remark = DASH, DASH, "compared with its own twin only"
-    if close:
-        outcome, remark = ("differs", one.stray) if one.stray else ("agrees", "")
-        difference = f"{_metres(close.largest_m)} up to {close.until_s:.2g} s"
+        return Row(one.engine, outcome, *[DASH] * 4, remark)
+    difference, rate = DASH, one.growth.rate_1_s
+    if one.closeness and one.closeness.frames:
+        difference = f"{_metres(one.closeness.largest_m)} up to {one.closeness.until_s:.2g} s"
     return Row(
         one.engine,
         outcome,
         difference,
-        f"{rate[0]:.3g} ± {rate[1]:.1g} /s" if rate else DASH,
+        f"{rate:.3g} /s" if rate is not None else DASH,
         _time(one.growth.noticed_s, recorded_s),
         _time(one.growth.horizon_s, recorded_s),
         remark,
@@ -121,20 +154,24 @@ def _row(one: EngineHorizon, recorded_s: float) -> Row:
 
 
 def _record(one: EngineHorizon) -> dict:
-    entry = {"engine": one.engine, "obstacle": one.obstacle}
+    entry = {"engine": one.engine, "outcome": one.outcome, "reason": one.stray or one.reason}
     if one.growth:
-        rate = one.growth.rate_1_s or (None, None)
         entry |= {
-            "growth_rate_1_s": rate[0],
-            "growth_rate_standard_error_1_s": rate[1],
+            "growth_rate_1_s": one.growth.rate_1_s,
             "noticed_s": one.growth.noticed_s,
             "horizon_s": one.growth.horizon_s,
+        }
+    if one.scheme_growth:
+        entry |= {
+            "native_scheme_noticed_s": one.scheme_growth.noticed_s,
+            "native_scheme_horizon_s": one.scheme_growth.horizon_s,
         }
     if one.closeness:
         entry |= {
             "native_scheme": one.closeness.scheme,
             "largest_difference_m": one.closeness.largest_m,
             "compared_until_s": one.closeness.until_s,
+            "compared_frames": one.closeness.frames,
             "beyond_limit_s": one.closeness.beyond_s,
         }
     return entry

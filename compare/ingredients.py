@@ -90,5 +90,5 @@ def engine_itself(target: str) -> Ingredient:
     return Ingredient(
         f"{target} itself",
         (),
-        f"The same steps done by the real {target}: rounding, and the chaos that it sets off.",
+        f"The same steps done by the real {target}: nothing should differ but rounding, and the chaos that it sets off.",
     )

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 from . import checks, horizon_tables
 from .comparison import Comparison
+from .horizon import FAILED
 from .wording import explanation, printable
 
 # Outcome: how the test ends; None is a pass.
@@ -17,6 +18,7 @@ ENDS = {
     checks.DIFFERS: "failure",
     checks.INCONCLUSIVE: "skipped",
     checks.NOT_COMPARABLE: "error",
+    FAILED: "error",
 }
 
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from pathlib import Path
 
 import jinja2
+import pandas as pd
 from markupsafe import Markup, escape
 
+from crossdem.adapters.case import Case
+
+from .record import libraries, plain
 from .wording import MINUS, printable
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -24,7 +29,7 @@ def render(name: str, values: dict) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"cell": _cell, "glued": _glued, "shown": _shown}
+    environment.filters |= {"cell": _cell, "glued": _glued, "shown": _shown, "css": _css}
     style = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
     return environment.get_template(name).render(values | {"style": style})
 
@@ -49,6 +54,33 @@ def _glued(text: str) -> str:
 def _shown(value: object) -> str:
     """A value of a manifest: numbers short, whatever else as it is."""
     return f"{value:.3g}".replace("-", MINUS) if isinstance(value, float) else str(value)
+
+
+def _css(words: str) -> str:
+    """The class in report.css that a verdict or an outcome is shown in."""
+    return words.lower().replace(" ", "-")
+
+
+def write_finding(
+    case: Case,
+    folder: Path,
+    name: str,
+    table: pd.DataFrame,
+    record: dict,
+    picture: bytes,
+    values: dict,
+) -> Path:
+    """NAME.csv, .json, .png and .html in `folder`, each whole or not at all; returns the path of the page, written last."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_whole(folder / f"{name}.csv", table.to_csv(index=False).encode())
+    about = {"name": case.name, "title": case.resolved["title"], "hash": case.hash}
+    content = {"schema_version": 1, "case": about} | record | {"libraries": libraries()}
+    text = json.dumps(plain(content), indent=2, ensure_ascii=False, allow_nan=False)
+    write_whole(folder / f"{name}.json", (text + "\n").encode())
+    write_whole(folder / f"{name}.png", picture)
+    page = {"title": case.resolved["title"], "case": case, "libraries": libraries()} | values
+    write_whole(folder / f"{name}.html", render(f"{name}.html", page).encode())
+    return folder / f"{name}.html"
 
 
 def write_whole(path: Path, content: bytes) -> None:

@@ -87,9 +87,8 @@ class _Bed:
             for touch in (*self.neighbours(i, self.particles), *self.surfaces(i))
         }
         self.clear_loads()
-        if self.reading["integrator"] == "velocity_verlet":
-            # its first half kick: by the springs as they are
-            self.collect_all(lambda i, touch: (self.springs[i, touch.partner][0], 0.0))
+        # The forces until the first evaluation, and of an integrator's first kick: those of the springs as they are.
+        self.collect_all(lambda i, touch: (self.springs[i, touch.partner][0], 0.0))
 
     def start_bar(self) -> None:
         self.bar_speed = self.bar["speed_m_s"] if self.bar else 0.0

@@ -57,7 +57,10 @@ def run_engines(
 def settle(
     case: Case, seeds: int, workspace: Workspace, jobs: int, display: ProgressDisplay
 ) -> tuple[list[Packing], dict[int, str]]:
-    """The packings of seeds 1, 2, ..., and by seed why one could not be made. Raises CaseError."""
+    """The packings of seeds 1, 2, ..., and by seed why one could not be made. Raises CaseError.
+
+    Particles placed by hand are one packing, whatever `seeds` says.
+    """
 
     def make(seed: int) -> Packing | SolverError:
         try:
@@ -65,7 +68,7 @@ def settle(
         except SolverError as error:
             return error
 
-    numbers = range(1, seeds + 1)
+    numbers = range(1, 2 if case.resolved["particle"] else seeds + 1)
     packings, unsettled = [], {}
     with ThreadPoolExecutor(jobs) as pool:  # leaving the loop early cancels what has not begun
         for seed, made in zip(numbers, pool.map(make, numbers)):
@@ -73,7 +76,7 @@ def settle(
                 packings.append(made)
             else:
                 unsettled[seed] = str(made)
-            display.update("packings", seed / seeds)
+            display.update("packings", seed / len(numbers))
     return packings, unsettled
 
 

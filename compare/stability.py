@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crossdem.adapters.case import Case, varied
+from crossdem.adapters.case import Case, CaseError, varied
+from crossdem.adapters.solver import BEYOND_REASON
 
 from .variants import Variant, VariantRun
 
 QUIET, AGITATED, BLOWN_UP, FAILED = "quiet", "agitated", "blown up", "failed"
 OUTCOMES = (QUIET, AGITATED, BLOWN_UP, FAILED)  # from good to bad
-BLOWN_UP_SIGN = "try a smaller time step"  # of the solver, when a motion is beyond reason
 DEFAULT_REST_S = 1.2  # for a case that has no rest of its own
 RECORDED_STEPS = 100  # after the rest: the least that a run records
 STEPS_IN_MAP = 22  # from half the lowest bound to a tenth above the highest
@@ -37,6 +37,7 @@ class Scheme:
 SCHEMES = (
     Scheme("paper", ("scheme.name=paper",), averages=True),
     Scheme("yade_averaged", ("scheme.name=yade_averaged",), averages=True),
+    Scheme("liggghts_averaged", ("scheme.name=liggghts_averaged",), averages=True),
     Scheme(
         "paper with leap-frog",
         ("scheme.name=paper", "scheme.integrator=leap_frog"),
@@ -72,11 +73,22 @@ class Trial:
 
 
 @dataclass(frozen=True)
+class Place:
+    """A scheme at a time step, and the case that tries it."""
+
+    scheme: Scheme
+    step_s: float
+    variant: Variant
+
+
+@dataclass(frozen=True)
 class StabilityMap:
     case: Case
     bounds: Bounds
     rest_s: float
     trials: tuple[Trial, ...]
+    left_out: dict[str, str]  # scheme: why it cannot have the case's readings
+    manifests: tuple[dict, ...] = ()  # of the runs with a result
 
     @property
     def schemes(self) -> list[Scheme]:
@@ -87,15 +99,22 @@ class StabilityMap:
         return [trial for trial in self.trials if trial.scheme == scheme.name]
 
     def quiet_up_to_s(self, scheme: Scheme) -> float | None:
-        """The largest time step below which, and at which, every bed is quiet; None: not even the smallest."""
+        """The largest time step at which every bed is quiet, and below which none is known not to be; None: there is none."""
         loud_s = self.loud_from_s(scheme) or math.inf
-        return max(
-            (trial.step_s for trial in self.of(scheme) if trial.step_s < loud_s), default=None
-        )
+        unknown = {trial.step_s for trial in self.of(scheme) if trial.outcome == FAILED}
+        steps = {trial.step_s for trial in self.of(scheme)} - unknown
+        return max((step_s for step_s in steps if step_s < loud_s), default=None)
+
+    def perhaps_further(self, scheme: Scheme) -> bool:
+        """Whether no bed, next above the quiet ones, shows where they end."""
+        quiet_s, loud_s = self.quiet_up_to_s(scheme) or 0.0, self.loud_from_s(scheme)
+        if loud_s is None:
+            return True
+        return any(quiet_s < trial.step_s < loud_s for trial in self.of(scheme))
 
     def loud_from_s(self, scheme: Scheme) -> float | None:
-        """The smallest time step at which some bed is not quiet."""
-        return self._least_s(scheme, (AGITATED, BLOWN_UP, FAILED))
+        """The smallest time step at which some bed is known not to be quiet; a run that failed tells nothing."""
+        return self._least_s(scheme, (AGITATED, BLOWN_UP))
 
     def blown_up_from_s(self, scheme: Scheme) -> float | None:
         return self._least_s(scheme, (BLOWN_UP,))
@@ -155,7 +174,7 @@ def trial(scheme: Scheme, step_s: float, run: VariantRun) -> Trial:
     """What became of a bed."""
     seed = run.packing.seed
     if run.failure:
-        outcome = BLOWN_UP if BLOWN_UP_SIGN in run.failure else FAILED
+        outcome = BLOWN_UP if run.exit_status == BEYOND_REASON else FAILED
         return Trial(scheme.name, step_s, seed, outcome, math.nan, run.failure)
     dataset = run.dataset()
     energy_J = float(dataset.resistance["kinetic_energy_J"].iloc[0])
@@ -163,8 +182,20 @@ def trial(scheme: Scheme, step_s: float, run: VariantRun) -> Trial:
     return Trial(scheme.name, step_s, seed, QUIET if quiet else AGITATED, energy_J, "")
 
 
-def grid(case: Case, steps_s: Sequence[float]) -> list[tuple[Scheme, float, Variant]]:
-    """Every place of the map."""
-    return [
-        (scheme, step_s, resting(case, scheme, step_s)) for scheme in SCHEMES for step_s in steps_s
-    ]
+def grid(case: Case, steps_s: Sequence[float]) -> tuple[list[Place], dict[str, str]]:
+    """Every place of the map; and by scheme, why one cannot have the case's readings.
+
+    Raises CaseError where that is so of all of them: then it is the time steps, or the case, that are at fault.
+    """
+    places, left_out = [], {}
+    for scheme in SCHEMES:
+        try:
+            row = [Place(scheme, step_s, resting(case, scheme, step_s)) for step_s in steps_s]
+        except CaseError as error:
+            left_out[scheme.name] = "; ".join(error.faults)
+            refused = error
+        else:
+            places += row
+    if not places:
+        raise refused
+    return places, left_out

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rich.console import Console
 
-from crossdem.adapters.case import Case
+from crossdem.adapters.case import Case, CaseError
 from crossdem.adapters.workspace import Workspace
 
 from .progress import ProgressDisplay
@@ -23,14 +23,21 @@ def map_stability(
     console: Console,
 ) -> StabilityMap:
     """Try every scheme at `steps_s` (none given: default_steps_s). Raises CaseError, SolverError."""
-    places = grid(case, steps_s or default_steps_s(case))
+    if case.resolved["particle"]:
+        raise CaseError(
+            [
+                f"{case.file_name}: particle: particles placed by hand are no packed bed; take out the [[particle]] "
+                "tables, or run `crossdem check` on this case"
+            ]
+        )
+    places, left_out = grid(case, steps_s or default_steps_s(case))
     with ProgressDisplay(console) as display:
         packings = settled(case, seeds, workspace, jobs, display)
-        display.say(f"{len(places) * seeds} runs, {jobs} at a time")
-        pairs = [(variant, packing) for _, _, variant in places for packing in packings]
-        runs = iter(run_variants(case, pairs, workspace, jobs, display))
-    trials = tuple(
-        trial(scheme, step_s, next(runs)) for scheme, step_s, _ in places for _ in packings
-    )
+        pairs = [(place.variant, packing) for place in places for packing in packings]
+        display.say(f"{len(pairs)} runs, {jobs} at a time")
+        runs = run_variants(case, pairs, workspace, jobs, display)
+    tried = [(place.scheme, place.step_s) for place in places for _ in packings]
+    trials = tuple(trial(*about, run) for about, run in zip(tried, runs))
+    manifests = tuple(run.manifest() for run in runs if run.folder)
     rest_s = case.resolved["time"]["rest_s"] or DEFAULT_REST_S
-    return StabilityMap(case, bounds(case), rest_s, trials)
+    return StabilityMap(case, bounds(case), rest_s, trials, left_out, manifests)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
 
 import pandas as pd
 
-from .stability import OUTCOMES, Scheme, StabilityMap, Trial
-from .wording import listed
+from .provenance import provenance
+from .stability import FAILED, OUTCOMES, Scheme, StabilityMap, Trial
+from .wording import DASH, listed
 
-DASH = "\N{EN DASH}"
 NOWHERE = "nowhere here"
 TITLES = (
     "scheme",
@@ -27,15 +28,29 @@ def rows(found: StabilityMap) -> list[tuple[str, ...]]:
 
 
 def sentence(found: StabilityMap) -> str:
+    """Up to where a bed rests, scheme by scheme."""
     limit = microseconds(found.bounds.eq32_s)
-    names: dict[str, list[str]] = {}  # by the time step up to which they are quiet
+    names: dict[str, list[str]] = {}  # by how far they are quiet
+    nowhere = []
     for scheme in found.schemes:
         if quiet_s := found.quiet_up_to_s(scheme):
-            names.setdefault(microseconds(quiet_s), []).append(scheme.name)
+            at_least = "at least " if found.perhaps_further(scheme) else ""
+            names.setdefault(at_least + microseconds(quiet_s), []).append(scheme.name)
+        elif found.loud_from_s(scheme):
+            nowhere.append(scheme.name)
+    allowed = f"Eq (32) of the paper allows {limit}."
     if not names:
-        return f"Nothing rests at any of these time steps; Eq (32) of the paper allows {limit}."
+        return f"No bed is known to rest at any of these time steps; {allowed}"
     said = [f"{quiet} ({', '.join(schemes)})" for quiet, schemes in names.items()]
-    return f"A packed bed rests up to {listed(said)}; Eq (32) of the paper allows {limit}."
+    unrested = f"; nowhere here under {listed(nowhere)}" if nowhere else ""
+    return f"A packed bed rests up to {listed(said)}{unrested}; {allowed}"
+
+
+def remarks(found: StabilityMap) -> list[tuple[str, str]]:
+    """By scheme, what is not on the map: those left out, and runs that failed, each reason once."""
+    left_out = [(name, f"left out: {why}") for name, why in found.left_out.items()]
+    failed = [(trial.scheme, trial.why) for trial in found.trials if trial.outcome == FAILED]
+    return left_out + list(dict.fromkeys(failed))
 
 
 def table(found: StabilityMap) -> pd.DataFrame:
@@ -52,11 +67,14 @@ def record(found: StabilityMap) -> dict:
                 "name": scheme.name,
                 "overrides": scheme.overrides,
                 "quiet_up_to_s": found.quiet_up_to_s(scheme),
+                "perhaps_further": found.perhaps_further(scheme),
                 "blown_up_from_s": found.blown_up_from_s(scheme),
                 "linear_bound_s": found.bounds.of(scheme),
             }
             for scheme in found.schemes
         ],
+        "left_out": found.left_out,
+        "provenance": asdict(provenance(found.manifests)),
         "trials": [asdict(trial) for trial in found.trials],
     }
 
@@ -77,7 +95,8 @@ def trial_rows(found: StabilityMap) -> list[tuple[str, list[str]]]:
 
 
 def microseconds(step_s: float) -> str:
-    return f"{1e6 * step_s:.3g} \N{MICRO SIGN}s"
+    """ "100 µs"; a dash for a bound that there is not."""
+    return f"{1e6 * step_s:.3g} \N{MICRO SIGN}s" if math.isfinite(step_s) else DASH
 
 
 def _row(found: StabilityMap, scheme: Scheme) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,10 +35,16 @@ class VariantRun:
     packing: Packing
     folder: Path | None
     failure: str | None
+    unsupported: bool = False  # a failure that no engine is to blame for
+    exit_status: int | None = None  # of a process that failed
 
     def dataset(self) -> Dataset:
         """Read anew each time: a walk through many variants would not go into memory."""
         return Dataset.read(self.folder)
+
+    def manifest(self) -> dict:
+        """That of the dataset, without reading it all."""
+        return json.loads((self.folder / "manifest.json").read_text(encoding="utf-8"))
 
 
 def run_variants(
@@ -70,7 +77,14 @@ def run_variants(
     if reused := sum(result.status == "reused" for result in found.values()):
         display.say(f"{reused} of {len(found)} runs were there already")
     return [
-        VariantRun(variant, packing, result.dataset_folder, result.failure)
+        VariantRun(
+            variant,
+            packing,
+            result.dataset_folder,
+            result.failure,
+            result.status == "unsupported",
+            result.exit_status,
+        )
         for variant, packing in pairs
         for result in [found[_identity(variant, packing)]]
     ]

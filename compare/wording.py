@@ -15,6 +15,7 @@ SHOWN_UNITS = {
     "J": (1e3, "mJ"),
 }  # SI unit: factor and unit of a size that reads well
 MINUS = "\N{MINUS SIGN}"
+DASH = "\N{EN DASH}"  # where there is nothing to show
 
 # Control characters, which neither XML nor a terminal may be given; and what is no character at all.
 UNPRINTABLE = re.compile("[^\t\n\r\u0020-\u007e\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -37,7 +38,7 @@ def listed(names: Sequence[str]) -> str:
 def number(value: float, digits: int = 3) -> str:
     """`value` to `digits` significant digits, without exponent where it can be; a dash for NaN."""
     if math.isnan(value):
-        return "\N{EN DASH}"
+        return DASH
     text = f"{value:#.{digits}g}"
     text = f"{float(text):.0f}" if "e+0" in text and abs(value) < 1e6 else text.rstrip(".")
     return text.replace("-", MINUS)
@@ -97,7 +98,7 @@ def margin(check: Check) -> str:
 def interval(result: CheckResult) -> str:
     """The 90 % interval of the mean difference; a dash where there are too few pairs for one."""
     if result.interval is None or not all(map(math.isfinite, result.interval)):
-        return "\N{EN DASH}"
+        return DASH
     return " to ".join(signed_difference(result.check, end) for end in result.interval)
 
 
