@@ -28,6 +28,7 @@ def check(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
     case = _load(case_file, overrides)
     if case.resolved["particle"]:  # no bed, of which there could be seeds
         return _check_ladder(case_file, engines, out, overrides, jobs)
+    _needs_bar(case)
     with _workspace(case, overrides, out) as workspace:
         runs = run_engines(case, engines, seeds, workspace, jobs, Console())
         found = horizon_of_runs(case, engines, runs.failures, workspace, jobs, Console())
@@ -61,6 +62,7 @@ def resolve(case_file, overrides) -> ExitCode:
 def compare(folders, out) -> ExitCode:
     datasets = [Dataset.read(folder) for folder in folders]
     case = Case.from_canonical((folders[0] / "inputs" / "case.json").read_bytes())
+    _needs_bar(case)
     if faults := comparison_faults(case, datasets):
         raise CaseError(faults)
     return _report(
@@ -104,6 +106,16 @@ def stability(case_file, steps_s, seeds, out, overrides, jobs) -> ExitCode:
     print_stability(found, page)
     failed = any(trial.outcome == FAILED for trial in found.trials)
     return ExitCode.ENGINE_FAILED if failed else ExitCode.AGREES
+
+
+def _needs_bar(case: Case) -> None:
+    """Raises CaseError for what no comparison of beds can be made of."""
+    if case.resolved["particle"]:
+        said = "its particles are placed by hand: `crossdem check` on its file compares such runs"
+        raise CaseError([f"{case.name}: {said}"])
+    if "bar" not in case.resolved:
+        said = "there is no bar, whose resistance is compared; `crossdem run` runs it without comparing"
+        raise CaseError([f"{case.file_name}: bar: {said}"])
 
 
 def _load(case_file: Path, overrides: list[str]) -> Case:

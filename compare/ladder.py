@@ -76,9 +76,11 @@ class Ladder:
         if not self.rungs:
             return "There is nothing to compare: no case has a twin or an answer."
         if not found:
+            unasked = " No case has an [[answer]]: each engine was held against its twin alone."
+            asked = any(rung.kind == rungs.CLOSED_FORM for rung in self.rungs)
             return (
                 f"{_names(self.engines)}: every one of {plural(len(self.rungs), 'rung')} on "
-                f"{plural(len(self.cases), 'case')} holds."
+                f"{plural(len(self.cases), 'case')} holds." + ("" if asked else unasked)
             )
         first = found[0]
         return (
@@ -90,10 +92,10 @@ class Ladder:
     @property
     def next_step(self) -> str:
         return {
-            AGREES: "Above it, `crossdem check CASE` compares whole beds.",
+            AGREES: "crossdem check reference_cases/bar_penetration.toml compares whole beds.",
             DIFFERS: "See the ladder's page for the rungs: a twin that differs shows a wrong number or operation, a "
             "closed form alone a wrong law.",
-            ENGINE_FAILED: "Read the log that it names; `crossdem doctor` shows which engines are here and what to "
+            ENGINE_FAILED: "Read the log that it names; crossdem doctor shows which engines are here and what to "
             "install.",
             INCONCLUSIVE: "See the ladder's page for what could not be compared, and why.",
         }[self.word]

@@ -86,6 +86,9 @@ def print_ladder(ladder: Ladder, page: Path, console: Console | None = None) -> 
         verdict.stylize(TONES.get(outcome, "dim"))
         table.add_row(*others, verdict)
     console.print(table)
+    console.print(
+        Text("Of several answers the one that uses up most of its tolerance.", style="dim")
+    )
     for rung in ladder.rungs:
         if rung.outcome != rungs.AGREES:
             line = f"{rung.case}, {rung.engine}, {rung.name}: {rung.sentence}"

@@ -34,6 +34,7 @@ from .rungs import (
     without_result,
 )
 from .twin_schemes import TWIN_SCHEMES, native_twin
+from .wording import plural
 
 NATIVE = "native"
 TRANSCRIPTION = "the paper's scheme in Python"
@@ -180,7 +181,7 @@ def _run(
         of_engine = [shares[key] for key in ours[request.engine_name]]
         display.update(request.engine_name, sum(of_engine) / len(of_engine))
 
-    display.say(f"{len(plans)} cases, {len(requests)} runs, {jobs} at a time")
+    display.say(f"{plural(len(plans), 'case')}, {plural(len(requests), 'run')}, {jobs} at a time")
     results = run_all(requests, workspace.root, jobs, told)
     if reused := sum(result.status == "reused" for result in results):
         display.say(f"{reused} of these were there already")

@@ -143,7 +143,8 @@ def answer_rung(case: dict, engine: str, entry: dict, runs: Sequence[Dataset]) -
         values = tuple(float(answer.measured(run)) for run in used)
         exact = float(answer.exact(Start.of(case), engine_law(engine, case)))
     except (ValueError, ZeroDivisionError) as error:
-        why = f"no value on this case: {error}"
+        said = "it divides by what is 0 here" if isinstance(error, ZeroDivisionError) else error
+        why = f"no value on this case: {said}"
         return without_result(case["name"], engine, CLOSED_FORM, answer.title, why, NOT_COMPARABLE)
     if answer.own_step:
         limit = values[0]

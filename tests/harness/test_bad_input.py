@@ -58,6 +58,13 @@ def test_an_unknown_key(refused, write):
     assert "case.toml: bar.sped_m_s: " in refused(write("speed_m_s", "sped_m_s"))
 
 
+def test_a_bed_without_a_bar_has_nothing_to_compare(refused, write):
+    case_file = write()
+    text = re.sub(r"\[bar\]\n(?:.+\n)+", "", case_file.read_text())
+    case_file.write_text(text)
+    assert "case.toml: bar: there is no bar, whose resistance is compared" in refused(case_file)
+
+
 def test_a_missing_key(refused, write):
     said = refused(write("density_kg_m3 = 1530.0", ""))
     assert "case.toml: particles.density_kg_m3: " in said

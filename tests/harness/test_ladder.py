@@ -106,6 +106,13 @@ def test_an_engine_must_be_its_twin_to_the_last_bit(case):
     assert one_bit.time_s == pytest.approx(0.05) and "1.73e-18 m" in one_bit.sentence
 
 
+def test_where_nothing_is_known_of_any_case_the_ladder_says_so(case):
+    only_twins = ladder_of(twin_of(case, 0.0))
+    assert only_twins.word == "AGREES" and "No case has an [[answer]]" in only_twins.sentence
+    asked = ladder_of(twin_of(case, 0.0), restitution_of(case, 0.7, 0.7, 0.7))
+    assert "No case has an [[answer]]" not in asked.sentence
+
+
 def test_a_limit_of_the_case_holds_for_its_engine_and_as_long_as_it_says(case):
     loose = {"engine": "liggghts", "limit_m": 1e-12, "until_s": 0.1, "reason": "summation order"}
     assert twin_of(case | {"twin": [loose]}, 1e-13).outcome == AGREES
