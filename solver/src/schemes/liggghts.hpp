@@ -1,62 +1,18 @@
 #pragma once
 // What LIGGGHTS-PUBLIC 3.8 does with discs, step by step and to the last bit: velocity Verlet (src/fix_nve_sphere.cpp)
-// and the law "hooke/stiffness tangential history absolute_damping on tangential_damping on"
-// (src/surface_model_default.h, normal_model_hooke_stiffness.h, tangential_model_history.h). In the plane, so that its
-// products with zero are left out.
+// and its Hooke law, walls and bar; how many particles that holds for stands in NOTATION.md.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "../laws/liggghts_hooke.hpp"
 #include "conventional.hpp"
 #include "liggghts_mesh.hpp"
+#include "liggghts_motion.hpp"
 
 namespace crossdem {
-
-/// Velocity Verlet as it stands.
-class LiggghtsVerlet {
- public:
-  static constexpr double first_share = 0.5;  // of a step, in which the loads before it act
-  explicit LiggghtsVerlet(const Particles&) {}
-  static void begin(Particles&) {}
-  static void end(World&) {}
-};
-
-/// The paper's averaged displacement inside LIGGGHTS, by velocities that are set between steps: with w the velocity by
-/// which a step has moved, taken back from that of its end, v = (3 w_t - w_(t-1)) / 2 makes the next half kick give
-/// Eqs. (16)-(21). The paper's velocity is 2 w_t - w_(t-1).
-class LiggghtsSetVelocities {
- public:
-  static constexpr double first_share = 1.0;
-  explicit LiggghtsSetVelocities(const Particles& p)
-      : set_(p.velocity), set_spin_(p.spin), rate_before_(p.velocity), turning_before_(p.spin) {}
-
-  void begin(Particles& p) const {
-    p.velocity = set_;
-    p.spin = set_spin_;
-  }
-
-  void end(World& w) {
-    Particles& p = w.particles;
-    for (std::size_t i = 0; i < p.count(); ++i) {
-      const Vector2 rate = p.velocity[i] - 0.5 * w.dt * w.loads[i].force / p.mass[i];
-      const double turning = p.spin[i] - w.dt * w.loads[i].moment / (p.radius[i] * p.radius[i] * p.mass[i]);
-      set_[i] = 1.5 * rate - 0.5 * rate_before_[i];
-      set_spin_[i] = 1.5 * turning - 0.5 * turning_before_[i];
-      p.velocity[i] = 2 * rate - rate_before_[i];
-      p.spin[i] = 2 * turning - turning_before_[i];
-      rate_before_[i] = rate;
-      turning_before_[i] = turning;
-    }
-  }
-
- private:
-  std::vector<Vector2> set_;            // [m/s], between this step and the next
-  std::vector<double> set_spin_;        // [rad/s]
-  std::vector<Vector2> rate_before_;    // [m/s], w_(t-1)
-  std::vector<double> turning_before_;  // [rad/s]
-};
 
 template <class Motion>
 class LiggghtsScheme {
@@ -131,12 +87,12 @@ class LiggghtsScheme {
     const double arm_i = p.radius[i] - 0.5 * overlap;
     const double arm_j = p.radius[j] - 0.5 * overlap;
     const double turning = (arm_i * p.spin[i] + arm_j * p.spin[j]) * inverse;
-    const Reaction f = react({.delta = delta,
-                              .inverse = inverse,
-                              .overlap = overlap,
-                              .velocity = p.velocity[i] - p.velocity[j],
-                              .turning = turning},
-                             w.particle_particle, w.dt, contact.memory.shear, advance);
+    const HookeReaction f = react({.delta = delta,
+                                   .inverse = inverse,
+                                   .overlap = overlap,
+                                   .velocity = p.velocity[i] - p.velocity[j],
+                                   .turning = turning},
+                                  w.particle_particle, w.dt, contact.memory.shear, advance);
     w.loads[i].force += f.force;
     w.loads[i].moment += -arm_i * f.couple;
     w.loads[j].force += -f.force;
@@ -171,46 +127,6 @@ class LiggghtsScheme {
   [[nodiscard]] double spring_energy() const { return spring_energy_; }
 
  private:
-  struct Approach {
-    Vector2 delta = Vector2::Zero();  // [m], from the partner's centre or the wall's closest point to the centre of i
-    double inverse = 0.0;             // 1 / distance [1/m]
-    double overlap = 0.0;             // [m]
-    Vector2 velocity = Vector2::Zero();  // [m/s], of i relative to its partner
-    double turning = 0.0;                // [rad/s], of the surfaces, over the distance
-  };
-  struct Reaction {
-    Vector2 force = Vector2::Zero();  // [N], on i
-    double couple = 0.0;              // [N]: the moment is -arm x couple
-  };
-
-  /// The law. `shear` is the contact's memory.
-  Reaction react(const Approach& a, const ContactParameters& k, double dt, Vector2& shear, bool advance) {
-    const Vector2 normal = a.delta * a.inverse;
-    const double approach = a.velocity.x() * normal.x() + a.velocity.y() * normal.y();  // < 0: approaching
-    const Vector2 sliding =
-        a.velocity - approach * normal - Vector2(0.0 - a.delta.y() * a.turning, a.delta.x() * a.turning - 0.0);
-    double push = -k.normal_damping * approach + k.normal_stiffness * a.overlap;
-    if (limit_force_ && push < 0.0) push = 0.0;
-
-    if (advance) {
-      shear += sliding * dt;
-      const double off_plane = shear.x() * normal.x() + shear.y() * normal.y();
-      shear -= off_plane * normal;
-    }
-    const double stretch = std::sqrt(shear.x() * shear.x() + shear.y() * shear.y());
-    Vector2 drag = -(k.shear_stiffness * shear);
-    const double spring = k.shear_stiffness * stretch;
-    const double cap = k.friction * std::abs(push);
-    if (spring > cap) {
-      drag *= cap / spring;
-      if (advance) shear = -drag / k.shear_stiffness;
-    } else {
-      drag -= k.shear_damping * sliding;
-    }
-    spring_energy_ += 0.5 * k.normal_stiffness * a.overlap * a.overlap + 0.5 * k.shear_stiffness * shear.squaredNorm();
-    return {push * normal + drag, normal.x() * drag.y() - normal.y() * drag.x()};
-  }
-
   /// Each triangle has its contact with its own shear spring. A disc that comes to lie over the other triangle of a
   /// face takes it along, src/fix_contact_history_mesh_I.h; the first triangle of a face may then act beside the second
   /// for a step, where the disc is so near to the line between them that it counts to both.
@@ -242,6 +158,12 @@ class LiggghtsScheme {
     memory.held = kept;
   }
 
+  HookeReaction react(const HookeApproach& a, const ContactParameters& k, double dt, Vector2& shear, bool advance) {
+    const HookeReaction reaction = liggghts_hooke(a, k, dt, limit_force_, advance, shear);
+    spring_energy_ += reaction.spring_energy;
+    return reaction;
+  }
+
   void touch(World& w, const SurfaceContact<SurfaceMemory>& contact, const Vector2& delta, double overlap,
              const Vector2& wall_velocity, Vector2& shear, bool advance) {
     Particles& p = w.particles;
@@ -249,12 +171,12 @@ class LiggghtsScheme {
     const double distance = p.radius[i] - overlap;
     const double inverse = 1.0 / distance;
     const double arm = p.radius[i] - 0.5 * overlap;
-    const Reaction f = react({.delta = delta,
-                              .inverse = inverse,
-                              .overlap = p.radius[i] - distance,
-                              .velocity = p.velocity[i] - wall_velocity,
-                              .turning = arm * p.spin[i] * inverse},
-                             w.particle_wall, w.dt, shear, advance);
+    const HookeReaction f = react({.delta = delta,
+                                   .inverse = inverse,
+                                   .overlap = p.radius[i] - distance,
+                                   .velocity = p.velocity[i] - wall_velocity,
+                                   .turning = arm * p.spin[i] * inverse},
+                                  w.particle_wall, w.dt, shear, advance);
     w.loads[i].force += f.force;
     w.loads[i].moment += -arm * f.couple;
     w.totals.add(w.surfaces, contact.surface, p.position[i], f.force);

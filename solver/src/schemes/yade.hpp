@@ -1,70 +1,20 @@
 #pragma once
-// What YADE 2023.02 does with discs, step by step and to the last bit: Law2_ScGeom_ViscElPhys_Basic between spheres
-// bound to a plane, walls and a box, and NewtonIntegrator without damping. In the plane, so that its products with zero
-// are left out.
+// What YADE 2023.02 does with discs, step by step and to the last bit: spheres bound to a plane, walls and a box; how
+// many particles that holds for stands in NOTATION.md.
 
 #include <cmath>
-#include <vector>
 
+#include "../laws/yade_viscel.hpp"
 #include "conventional.hpp"
+#include "yade_motion.hpp"
 
 namespace crossdem {
-
-/// NewtonIntegrator: v += (F/m + g) dt, x += v dt. The law sees the velocities of half a step before its positions.
-class YadeLeapFrog {
- public:
-  explicit YadeLeapFrog(const Particles&) {}
-  [[nodiscard]] static const Vector2& velocity(const Particles& p, std::size_t i) { return p.velocity[i]; }
-  [[nodiscard]] static double spin(const Particles& p, std::size_t i) { return p.spin[i]; }
-
-  static void move(Particles& p, std::size_t i, const Load& load, double gravity, double dt) {
-    p.velocity[i] += dt * (load.force / p.mass[i] + Vector2(0.0, -gravity));
-    p.spin[i] += dt * (load.moment / p.inertia[i]);
-    p.position[i] += p.velocity[i] * dt;
-    p.angle[i] += p.spin[i] * dt;
-  }
-};
-
-/// The paper's averaged displacement inside YADE: with w = displacement / dt, Eqs. (16)-(21) read
-/// w_t = w_(t-1) + (w_(t-1) - w_(t-2)) / 2 + a dt / 2, a leap-frog step of twice the mass and inertia under half of
-/// gravity and a further load m (w_(t-1) - w_(t-2)) / dt. YADE moves by w; the paper's velocity is 2 w_t - w_(t-1).
-class YadeMemoryForce {
- public:
-  explicit YadeMemoryForce(const Particles& p)
-      : rate_(p.velocity), rate_before_(p.velocity), turning_(p.spin), turning_before_(p.spin) {}
-  [[nodiscard]] const Vector2& velocity(const Particles&, std::size_t i) const { return rate_[i]; }
-  [[nodiscard]] double spin(const Particles&, std::size_t i) const { return turning_[i]; }
-
-  void move(Particles& p, std::size_t i, const Load& load, double gravity, double dt) {
-    const Vector2 force = load.force + p.mass[i] * (rate_[i] - rate_before_[i]) / dt;
-    const double moment = load.moment + p.inertia[i] * (turning_[i] - turning_before_[i]) / dt;
-    rate_before_[i] = rate_[i];
-    turning_before_[i] = turning_[i];
-    rate_[i] += dt * (force / (2 * p.mass[i]) + Vector2(0.0, -gravity / 2));
-    turning_[i] += dt * (moment / (2 * p.inertia[i]));
-    p.position[i] += rate_[i] * dt;
-    p.angle[i] += turning_[i] * dt;
-    p.velocity[i] = 2 * rate_[i] - rate_before_[i];
-    p.spin[i] = 2 * turning_[i] - turning_before_[i];
-  }
-
- private:
-  std::vector<Vector2> rate_;           // [m/s], w_(t-1)
-  std::vector<Vector2> rate_before_;    // [m/s], w_(t-2)
-  std::vector<double> turning_;         // [rad/s]
-  std::vector<double> turning_before_;  // [rad/s]
-};
 
 template <class Motion>
 class YadeScheme {
  public:
-  struct Memory {
-    Vector2 shear = Vector2::Zero();   // [N], the elastic shear force on body 2
-    Vector2 normal = Vector2::Zero();  // from body 1 to body 2, at the last evaluation
-    bool real = false;                 // as YADE calls an interaction that has touched and not yet parted
-  };
-  using PairMemory = Memory;
-  using SurfaceMemory = Memory;
+  using PairMemory = ViscElMemory;
+  using SurfaceMemory = ViscElMemory;
   static constexpr bool first_evaluation_advances = true;
 
   YadeScheme(const Case& setup, const World& world)
@@ -91,7 +41,7 @@ class YadeScheme {
   [[nodiscard]] double spring_energy() const { return spring_energy_; }
 
   /// Ig2_Sphere_Sphere_ScGeom; body 1 is the one with the lower number.
-  void pair(World& w, PairContact<Memory>& contact, bool) {
+  void pair(World& w, PairContact<ViscElMemory>& contact, bool) {
     Particles& p = w.particles;
     const std::uint32_t i = contact.i;
     const std::uint32_t j = contact.j;
@@ -115,7 +65,7 @@ class YadeScheme {
   }
 
   /// The surface is body 1.
-  void surface(World& w, SurfaceContact<Memory>& contact, bool) {
+  void surface(World& w, SurfaceContact<ViscElMemory>& contact, bool) {
     Particles& p = w.particles;
     const std::uint32_t i = contact.i;
     const Meeting at = contact.surface == Surface::bar ? meet_box(p.position[i], p.radius[i])
@@ -158,8 +108,6 @@ class YadeScheme {
             .friction = std::tan(std::atan(wanted.friction))};
   }
 
-  static double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
   /// Velocity of the disc's material at `arm` from its centre [m/s].
   [[nodiscard]] Vector2 at_point(const Particles& p, std::size_t i, const Vector2& arm) const {
     const double spin = motion_.spin(p, i);
@@ -190,37 +138,11 @@ class YadeScheme {
     return {-towards, radius - distance, 0.5 * (of_box + of_disc)};
   }
 
-  /// The law; `velocity` of body 1 relative to body 2 at the contact point, `force` on body 2. False where they have
-  /// parted: the interaction is deleted, with its memory.
-  bool react(Memory& memory, const ContactParameters& k, const Vector2& normal, double overlap, const Vector2& velocity,
-             double dt, Vector2& force) {
-    if (overlap < 0.0) {
-      memory = {};
-      return false;
-    }
-    Vector2& shear = memory.shear;
-    if (memory.real) {  // turned with the contact, to first order
-      const double turn = cross(memory.normal, normal);
-      shear = {shear.x() - shear.y() * turn, shear.y() + shear.x() * turn};
-    }
-    memory.normal = normal;
-    memory.real = true;
-
-    const double approach = normal.dot(velocity);
-    const Vector2 sliding = velocity - approach * normal;
-    shear += k.shear_stiffness * dt * sliding;
-    const double push = k.normal_stiffness * overlap + k.normal_damping * approach;
-    const Vector2 normal_force = push < 0.0 ? Vector2(Vector2::Zero()) : Vector2(push * normal);
-    const double cap_squared = normal_force.squaredNorm() * (k.friction * k.friction);
-    Vector2 viscous = Vector2::Zero();
-    if (shear.squaredNorm() > cap_squared)
-      shear *= std::sqrt(cap_squared) / shear.norm();
-    else
-      viscous = k.shear_damping * sliding;
-    force = normal_force + shear + viscous;
-    spring_energy_ += 0.5 * k.normal_stiffness * overlap * overlap;
-    if (k.shear_stiffness > 0.0) spring_energy_ += 0.5 * shear.squaredNorm() / k.shear_stiffness;
-    return true;
+  bool react(ViscElMemory& memory, const ContactParameters& k, const Vector2& normal, double overlap,
+             const Vector2& velocity, double dt, Vector2& force) {
+    const bool together = yade_viscel(normal, overlap, velocity, k, dt, memory, force);
+    if (together) spring_energy_ += yade_spring_energy(overlap, k, memory);
+    return together;
   }
 
   Motion motion_;
