@@ -159,7 +159,7 @@ class LiggghtsScheme {
   }
 
   HookeReaction react(const HookeApproach& a, const ContactParameters& k, double dt, Vector2& shear, bool advance) {
-    const HookeReaction reaction = liggghts_hooke(a, k, dt, limit_force_, advance, shear);
+    HookeReaction reaction = liggghts_hooke(a, k, dt, limit_force_, advance, shear);
     spring_energy_ += reaction.spring_energy;
     return reaction;
   }
