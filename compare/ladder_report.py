@@ -123,7 +123,7 @@ def _values(ladder: Ladder) -> dict:
     held = sum(rung.outcome == rungs.AGREES for rung in ladder.rungs)
     return {
         "ladder": ladder,
-        "title": f"The ladder {ladder.name}",
+        "title": f"Ladder: {ladder.name}",
         "colours": {engine: style.colour for engine, style in styles.items()},
         "engines": ladder.engines,
         "held": f"{held} of {plural(len(ladder.rungs), 'rung')}",
