@@ -5,7 +5,6 @@ What is known is a closed form in the limit of a vanishing time step, or an inva
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -13,6 +12,7 @@ from crossdem.adapters.dataset import Dataset
 
 from . import exact, measures
 from .engine_laws import EngineLaw
+from .quantities import numbered_tables, unknown_name
 from .start import Start
 
 
@@ -134,18 +134,11 @@ ANSWERS = {
 }
 
 
-def answer_tables(case: dict, key: str) -> list[tuple[int, dict]]:
-    """The tables of a list in a case, numbered; what stands there and is no table is the schema's business."""
-    entries = case.get(key, [])
-    numbered = enumerate(entries if isinstance(entries, list) else [])
-    return [(number, entry) for number, entry in numbered if isinstance(entry, dict)]
-
-
 def answer_faults(case: dict) -> list[str]:
     """A fault line for each answer and expected difference of `case`, resolved or as read, that cannot be had of it."""
     lines = []
     for key in ("answer", "difference"):
-        for number, entry in answer_tables(case, key):
+        for number, entry in numbered_tables(case, key):
             name = entry.get("quantity")
             if isinstance(name, str) and (fault := _fault(case, name)):
                 lines.append(f"{key}[{number}].quantity: {fault}")
@@ -155,9 +148,7 @@ def answer_faults(case: dict) -> list[str]:
 def _fault(case: dict, name: str) -> str | None:
     answer, particles = ANSWERS.get(name), case.get("particle")
     if answer is None:
-        near = difflib.get_close_matches(name, ANSWERS, n=1)
-        hint = f"did you mean {near[0]!r}? " if near else ""
-        return f"unknown answer {name!r}; {hint}known: {', '.join(ANSWERS)}"
+        return unknown_name("answer", name, ANSWERS)
     if not isinstance(particles, list) or not 1 <= len(particles) <= answer.most:
         return f"{name} is known of 1 to {answer.most} given [[particle]] tables only"
     if answer.bar and "bar" not in case:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from functools import partial
 from pathlib import Path
 
@@ -19,8 +18,8 @@ from .colours import engine_styles
 from .drawing import png_figure, svg
 from .horizon import Horizon
 from .horizon_figure import draw_growth
-from .pages import render, write_whole
-from .record import libraries, plain
+from .pages import render, write_record, write_whole
+from .record import libraries
 from .wording import printable
 
 # How the sentence looks, by the exit code: classes of report.css.
@@ -40,10 +39,7 @@ def write_horizon(case: Case, horizon: Horizon, folder: Path) -> Path:
     """
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / "horizon.csv", tables.curves(horizon).to_csv(index=False).encode())
-    about = {"name": case.name, "title": case.resolved["title"], "hash": case.hash}
-    content = plain({"schema_version": 1, "case": about} | tables.record(horizon))
-    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
-    write_whole(folder / "horizon.json", (text + "\n").encode())
+    write_record(case, folder / "horizon.json", tables.record(horizon))
     draw = partial(draw_growth, horizon)
     if _has_curves(horizon):
         picture = png_figure(lambda figure: draw(figure.add_subplot(), legend=True), WIDE_PX)

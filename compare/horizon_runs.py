@@ -19,7 +19,7 @@ from crossdem.adapters.workspace import Workspace
 from .comparison import in_order
 from .horizon import COMPARED_S, SHIFT_M, EngineHorizon, Horizon, closeness, growth
 from .progress import ProgressDisplay
-from .twin_schemes import TWIN_SCHEMES, native_twin
+from .twin_schemes import TWIN_SCHEMES, native_twin_or_why
 from .variants import Variant, VariantRun, run_variants
 
 SEED = 1  # of the packing on which a check compares particle by particle
@@ -166,10 +166,10 @@ def shifted(packing: Packing, workspace: Workspace) -> Packing:
 
 def _native_scheme(start: Case, engine: str) -> Variant | str:
     """What `engine` is compared with: the native solver in the scheme of its name; or why there is none."""
-    try:
-        return Variant(f"native scheme {TWIN_SCHEMES[engine]}", native_twin(start, engine))
-    except CaseError as error:
-        return f"no native twin: {'; '.join(error.faults)}"
+    twin = native_twin_or_why(start, engine)
+    return (
+        Variant(f"native scheme {TWIN_SCHEMES[engine]}", twin) if isinstance(twin, Case) else twin
+    )
 
 
 def _measured(

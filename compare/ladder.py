@@ -2,26 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from crossdem import ExitCode
 
 from . import rungs
 from .rungs import Rung
-from .wording import plural
-
-AGREES = "AGREES"
-DIFFERS = "DIFFERS"
-ENGINE_FAILED = "ENGINE FAILED OR MISSING"
-INCONCLUSIVE = "INCONCLUSIVE"
-
-EXIT_CODES = {
-    AGREES: ExitCode.AGREES,
-    DIFFERS: ExitCode.DIFFERS,
-    ENGINE_FAILED: ExitCode.ENGINE_FAILED,
-    INCONCLUSIVE: ExitCode.INCONCLUSIVE,
-}
+from .verdict import AGREES, DIFFERS, ENGINE_FAILED, EXIT_CODES, INCONCLUSIVE
+from .wording import listed, plural
 
 
 @dataclass(frozen=True)
@@ -79,7 +67,7 @@ class Ladder:
             unasked = " No case has an [[answer]]: each engine was held against its twin alone."
             asked = any(rung.kind == rungs.CLOSED_FORM for rung in self.rungs)
             return (
-                f"{_names(self.engines)}: every one of {plural(len(self.rungs), 'rung')} on "
+                f"{listed(self.engines)}: every one of {plural(len(self.rungs), 'rung')} on "
                 f"{plural(len(self.cases), 'case')} holds." + ("" if asked else unasked)
             )
         first = found[0]
@@ -99,7 +87,3 @@ class Ladder:
             "install.",
             INCONCLUSIVE: "See the ladder's page for what could not be compared, and why.",
         }[self.word]
-
-
-def _names(engines: Sequence[str]) -> str:
-    return " and ".join([", ".join(engines[:-1]), engines[-1]]) if len(engines) > 1 else engines[0]

@@ -33,7 +33,7 @@ from .rungs import (
     twin_rung,
     without_result,
 )
-from .twin_schemes import TWIN_SCHEMES, native_twin
+from .twin_schemes import TWIN_SCHEMES, native_twin_or_why
 from .wording import plural
 
 NATIVE = "native"
@@ -145,16 +145,10 @@ def _plan(path: Path, engines: Sequence[str], overrides: tuple[str, ...]) -> Pla
             for engine, settings in case.resolved["engines"].items()
         ]
         levels.append(load_case(path, [*overrides, *steps]))
-    twins = {engine: _twin(case, engine) for engine in engines if engine in TWIN_SCHEMES}
+    twins = {
+        engine: native_twin_or_why(case, engine) for engine in engines if engine in TWIN_SCHEMES
+    }
     return Plan(path, overrides, case, levels, twins)
-
-
-def _twin(case: Case, engine: str) -> Case | str:
-    """The same case for the native solver in the engine's place, or why there is none."""
-    try:
-        return native_twin(case, engine)
-    except CaseError as error:
-        return f"no native twin: {'; '.join(error.faults)}"
 
 
 def _request(plan: Plan, engines: Sequence[str]) -> None:

@@ -73,14 +73,19 @@ def write_finding(
     """NAME.csv, .json, .png and .html in `folder`, each whole or not at all; returns the path of the page, written last."""
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / f"{name}.csv", table.to_csv(index=False).encode())
-    about = {"name": case.name, "title": case.resolved["title"], "hash": case.hash}
-    content = {"schema_version": 1, "case": about} | record | {"libraries": libraries()}
-    text = json.dumps(plain(content), indent=2, ensure_ascii=False, allow_nan=False)
-    write_whole(folder / f"{name}.json", (text + "\n").encode())
+    write_record(case, folder / f"{name}.json", record | {"libraries": libraries()})
     write_whole(folder / f"{name}.png", picture)
     page = {"title": case.resolved["title"], "case": case, "libraries": libraries()} | values
     write_whole(folder / f"{name}.html", render(f"{name}.html", page).encode())
     return folder / f"{name}.html"
+
+
+def write_record(case: Case, path: Path, record: dict) -> None:
+    """What was found of `case`, as JSON."""
+    about = {"name": case.name, "title": case.resolved["title"], "hash": case.hash}
+    content = plain({"schema_version": 1, "case": about} | record)
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    write_whole(path, (text + "\n").encode())
 
 
 def write_whole(path: Path, content: bytes) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,8 +57,13 @@ QUANTITIES = {
 
 
 def check_tables(case: dict) -> list[tuple[int, dict]]:
-    """The [[check]] tables of a case, numbered; what stands there and is no table is the schema's business."""
-    entries = case.get("check", [])
+    """The [[check]] tables of a case, numbered."""
+    return numbered_tables(case, "check")
+
+
+def numbered_tables(case: dict, key: str) -> list[tuple[int, dict]]:
+    """The tables of a list in a case, numbered; what stands there and is no table is the schema's business."""
+    entries = case.get(key, [])
     numbered = enumerate(entries if isinstance(entries, list) else [])
     return [(number, entry) for number, entry in numbered if isinstance(entry, dict)]
 
@@ -70,12 +75,15 @@ def unknown_quantities(case: dict) -> list[str]:
         name = check.get("quantity")
         if name in QUANTITIES or not isinstance(name, str):
             continue
-        near = difflib.get_close_matches(name, QUANTITIES, n=1)
-        hint = f"did you mean {near[0]!r}? " if near else ""
-        lines.append(
-            f"check[{number}].quantity: unknown quantity {name!r}; {hint}known: {', '.join(QUANTITIES)}"
-        )
+        lines.append(f"check[{number}].quantity: {unknown_name('quantity', name, QUANTITIES)}")
     return lines
+
+
+def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
+    """That `name` is none of the `known`, with the one that may have been meant."""
+    near = difflib.get_close_matches(name, known, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    return f"unknown {what} {name!r}; {hint}known: {', '.join(known)}"
 
 
 def endpoints(datasets: list[Dataset]) -> pd.DataFrame:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from crossdem.adapters.case import Case, varied_table
+from crossdem.adapters.case import Case, CaseError, varied_table
 
 TWIN_SCHEMES = {
     "liggghts": "liggghts",
@@ -12,6 +12,14 @@ TWIN_SCHEMES = {
 }
 # The readings of a case that an engine follows; of the others its law has its own, and so has its twin.
 FOLLOWED_READINGS = {"liggghts": ("attraction",), "liggghts-averaged": ("attraction",)}
+
+
+def native_twin_or_why(case: Case, engine: str) -> Case | str:
+    """As native_twin; or the sentence that says why there is none."""
+    try:
+        return native_twin(case, engine)
+    except CaseError as error:
+        return f"no native twin: {'; '.join(error.faults)}"
 
 
 def native_twin(case: Case, engine: str) -> Case:

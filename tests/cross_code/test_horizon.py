@@ -9,7 +9,7 @@ from small_case import SMALL
 
 from crossdem import ExitCode
 from crossdem.adapters.case import varied
-from crossdem.compare import cli, horizon_runs
+from crossdem.compare import cli, twin_schemes
 from crossdem.compare.twin_schemes import TWIN_SCHEMES
 
 ONE_CHECK = """check=[{quantity="mean_resistance_N", kind="relative", margin=0.1, seed_scatter=0.06, reason="one"}]"""
@@ -37,12 +37,12 @@ def test_a_fault_in_the_law_makes_check_differ_and_names_engine_and_time(
 ):
     """The native scheme of another friction stands for an engine whose friction is wrong."""
     required(engine_name)
-    right = horizon_runs.native_twin
+    right = twin_schemes.native_twin
 
     def wrong(start, engine):
         return right(varied(start, ["contact.particle_particle.friction=0.7"]), engine)
 
-    monkeypatch.setattr(horizon_runs, "native_twin", wrong)
+    monkeypatch.setattr(twin_schemes, "native_twin", wrong)
     out = tmp_path / "out"
     options = ["--engines", f"native,{engine_name}", "--seeds", "1", "--out", str(out)]
     assert cli.main(["check", str(REFERENCE), *OVERRIDES, *options]) == ExitCode.DIFFERS

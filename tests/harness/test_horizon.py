@@ -15,7 +15,15 @@ from crossdem import ExitCode
 from crossdem.adapters.case import CaseError, load_case
 from crossdem.adapters.packing import make_packing
 from crossdem.adapters.workspace import Workspace
-from crossdem.compare import horizon_report, horizon_runs, horizon_tables, report, summary, verdict
+from crossdem.compare import (
+    horizon_report,
+    horizon_runs,
+    horizon_tables,
+    report,
+    summary,
+    twin_schemes,
+    verdict,
+)
 from crossdem.compare.comparison import compare_runs
 from crossdem.compare.horizon import (
     LIMIT_M,
@@ -317,7 +325,7 @@ def test_an_engine_without_a_native_twin_keeps_its_growth(case, tmp_path, monkey
         raise CaseError(["time.step_s: too large"])
 
     monkeypatch.setattr(horizon_runs, "TWIN_SCHEMES", {"native": "paper"})
-    monkeypatch.setattr(horizon_runs, "native_twin", refused)
+    monkeypatch.setattr(twin_schemes, "native_twin", refused)
     horizon = horizon_runs.find_horizon(case, ["native"], 1, Workspace(tmp_path / "out"), 1, QUIET)
     [one] = horizon.engines
     assert one.growth is not None and (one.outcome, one.failed) == ("not comparable", False)
