@@ -12,6 +12,10 @@ from .solver import call_solver, messages
 from .toml_text import TextError, read_toml
 
 
+# Tables and keys that say how runs are judged: no engine reads them.
+JUDGED_BY = ("title", "check")
+
+
 class CaseError(Exception):
     """A case that cannot be used; `faults` holds one printable line per fault."""
 
@@ -35,6 +39,12 @@ class Case:
         return hashlib.sha256(self.canonical).hexdigest()
 
     @property
+    def run_hash(self) -> str:
+        """SHA-256 [hex] of all that runs depend on: another margin needs no other runs."""
+        read = {key: value for key, value in self.resolved.items() if key not in JUDGED_BY}
+        return hashlib.sha256(_canonical(read)).hexdigest()
+
+    @property
     def name(self) -> str:
         return self.resolved["name"]
 
@@ -50,8 +60,13 @@ class Case:
     @classmethod
     def from_resolved(cls, resolved: dict) -> "Case":
         """From a resolved case at hand as a dict, such as a dataset's."""
-        text = json.dumps(resolved, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
-        return cls(resolved, text.encode())
+        return cls(resolved, _canonical(resolved))
+
+
+def _canonical(values: dict) -> bytes:
+    return json.dumps(
+        values, sort_keys=True, separators=(",", ":"), ensure_ascii=False
+    ).encode()
 
 
 def load_case(

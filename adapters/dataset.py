@@ -45,6 +45,11 @@ class Dataset:
     def seed(self) -> int:
         return self.manifest["seed"]
 
+    @property
+    def twin(self) -> int:
+        """Which of the packing's twins it started from: 0 is the packing as it was settled."""
+        return self.manifest["twin"]
+
     def write(
         self, folder: Path, extra_files_from: Path | None = None, without: str | None = None
     ) -> None:

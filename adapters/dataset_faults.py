@@ -29,6 +29,7 @@ MANIFEST_KEYS = (
     "case_hash",
     "packing_hash",
     "seed",
+    "twin",
     "engine",
     "engine_version",
     "compiler",

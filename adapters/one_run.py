@@ -155,6 +155,7 @@ class Run:
             "case_hash": case.hash,
             "packing_hash": packing.hash,
             "seed": packing.seed,
+            "twin": packing.twin,
             "engine": self.engine.name,
             "engine_version": self.engine.version(),
             "compiler": self.engine.compiler(),

@@ -20,6 +20,10 @@ COLUMNS = (
 )
 
 
+# How far the twins of a packing lie apart: far below any physics, far above the last bit of a position.
+SHIFT_M = 1e-12
+
+
 class PackingError(Exception):
     """A folder that holds no usable packing."""
 
@@ -34,6 +38,7 @@ class Packing:
     contacts: int  # pairs of particles
     hash: str  # SHA-256 [hex] of packing.csv
     folder: Path
+    twin: int = 0  # 0: as it was settled; k: one particle lies k SHIFT_M further to the right
 
     @classmethod
     def read(cls, folder: Path) -> "Packing":
@@ -51,6 +56,7 @@ class Packing:
                 contacts=int(about["contacts"]),
                 hash=hashlib.sha256(table).hexdigest(),
                 folder=folder,
+                twin=int(about.get("twin", 0)),
             )
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise PackingError(f"{folder} holds no packing: {error}") from error
@@ -81,10 +87,37 @@ def make_packing(case: Case, seed: int, folder: Path) -> Packing:
     return Packing.read(folder)
 
 
+def make_twin(packing: Packing, number: int, folder: Path) -> Packing:
+    """The `number`th twin of a settled packing, made in `folder` unless it is there already, whole or not at all.
+
+    Its particle in the middle of the bed lies number x SHIFT_M further to the right. 0 is the packing itself.
+    """
+    if number == 0:
+        return packing
+    try:
+        return Packing.read(folder)
+    except PackingError:
+        shutil.rmtree(folder, ignore_errors=True)
+    particles = packing.particles.copy()
+    place_m = particles[["x_m", "y_m"]].to_numpy()
+    middle = int(np.argmin(np.hypot(*(place_m - place_m.mean(axis=0)).T)))
+    particles.loc[middle, "x_m"] += number * SHIFT_M
+    about = json.loads((packing.folder / "packing.json").read_bytes()) | {"twin": number}
+    unfinished = Path(mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+    try:
+        particles.to_csv(unfinished / "packing.csv", index=False)
+        (unfinished / "packing.json").write_text(json.dumps(about) + "\n", encoding="utf-8")
+        unfinished.chmod(0o755)
+        unfinished.rename(folder)
+    finally:
+        shutil.rmtree(unfinished, ignore_errors=True)
+    return Packing.read(folder)
+
+
 def packing_key(case: Case, seed: int) -> str:
     """Names a packing by all it is made from [hex]: the case, the seed and the program that settles it."""
     program = hashlib.sha256(find_solver().read_bytes()).hexdigest()
-    return hashlib.sha256(f"{case.hash} {seed} {program}".encode()).hexdigest()
+    return hashlib.sha256(f"{case.run_hash} {seed} {program}".encode()).hexdigest()
 
 
 def _check(particles: pd.DataFrame, about: dict) -> None:

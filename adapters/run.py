@@ -178,7 +178,7 @@ class _Queue:
 
 def _bed(run: Run) -> tuple[str, str]:
     """What names the bed that a run loads: variants of a case share their packings, and rest differently."""
-    return run.case.hash, run.request.packing.hash
+    return run.case.run_hash, run.request.packing.hash
 
 
 def _finished(run: Run) -> Dataset | None:

@@ -24,13 +24,14 @@ class RunRequest:
 
 def run_key(case: Case, packing: Packing, engine: Engine) -> str:
     """SHA-256 [hex] of all that the result depends on. Raises EngineNotFound."""
-    parts = (case.hash, packing.hash, engine.name, engine.version(), engine.digest())
+    parts = (case.run_hash, packing.hash, engine.name, engine.version(), engine.digest())
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
 def run_name(packing: Packing, engine: Engine, key: str) -> str:
     """The folder's name."""
-    return f"{engine.name}-seed{packing.seed}-{key[:12]}"
+    twin = f"-twin{packing.twin}" if packing.twin else ""
+    return f"{engine.name}-seed{packing.seed}{twin}-{key[:12]}"
 
 
 def prepare(case: Case, packing: Packing, engine: Engine, folder: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import IO
 
 from .case import Case
-from .packing import packing_key
+from .packing import Packing, packing_key
 
 _MARKER = "crossdem.json"
 _RUN_FOLDERS = ("runs", "variants", "failed")
@@ -37,6 +37,10 @@ class Workspace:
 
     def packing_folder(self, case: Case, seed: int) -> Path:
         return self.root / "packings" / f"seed{seed}-{packing_key(case, seed)[:12]}"
+
+    def twin_folder(self, packing: Packing, number: int) -> Path:
+        """Of the packing's twin `number`."""
+        return packing.folder.with_name(f"{packing.folder.name}-twin{number}")
 
     def discard_if_new(self) -> None:
         """Undoes the constructor: for a fault that shows only after it. Not once there are runs, which it would orphan."""

@@ -15,6 +15,7 @@ from scipy import stats
 
 from crossdem import ExitCode
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.packing import SHIFT_M
 
 from . import checks
 from .wording import metres
@@ -22,7 +23,6 @@ from .wording import metres
 FAILED = "failed"  # an outcome beside those of checks
 
 # Of one particle of the twin: far above the rounding of a coordinate, a billionth of a radius.
-SHIFT_M = 1e-12
 NOTICED_M = 1e-9  # drift from which on no comparison to this limit can be made
 LOST_SHARE = 0.01  # of the smallest radius: the drift at the horizon
 # Drifts between which growth is exponential: past the start, far from the horizon.

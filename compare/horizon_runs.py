@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import math
-import shutil
 import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
 from rich.console import Console
 
 from crossdem.adapters.case import Case, CaseError, varied
 from crossdem.adapters.engines import get_engine
-from crossdem.adapters.packing import Packing, make_packing
+from crossdem.adapters.packing import Packing, make_packing, make_twin
 from crossdem.adapters.workspace import Workspace
 
 from .comparison import in_order
-from .horizon import COMPARED_S, SHIFT_M, EngineHorizon, Horizon, closeness, growth
+from .horizon import COMPARED_S, EngineHorizon, Horizon, closeness, growth
 from .progress import ProgressDisplay
 from .twin_schemes import TWIN_SCHEMES, native_twin_or_why
 from .variants import Variant, VariantRun, run_variants
@@ -95,7 +93,7 @@ def _measure(
             variants[name] = Variant(name, start, name)
     schemes = {name: _native_scheme(start, name) for name in variants if name in TWIN_SCHEMES}
     wanted = [*variants.values(), *(one for one in schemes.values() if isinstance(one, Variant))]
-    twin = shifted(packing, workspace)
+    twin = make_twin(packing, 1, workspace.twin_folder(packing, 1))
     pairs = [(variant, packing) for variant in wanted]
     pairs += [(replace(one, name=f"{one.name} from the twin"), twin) for one in wanted]
     display.say(f"{len(pairs)} short runs for the horizon")
@@ -148,20 +146,6 @@ def from_packing(case: Case) -> Case:
         "frame_interval_s": frame_s,
     }
     return varied(case, [f"time.{key}={value!r}" for key, value in values.items()])
-
-
-def shifted(packing: Packing, workspace: Workspace) -> Packing:
-    """The packing's twin: the particle in the middle of the bed lies SHIFT_M further to the right."""
-    folder = workspace.root / "packings" / f"{packing.folder.name}-shifted"
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    particles = packing.particles.copy()
-    place_m = particles[["x_m", "y_m"]].to_numpy()
-    middle = int(np.argmin(np.hypot(*(place_m - place_m.mean(axis=0)).T)))
-    particles.loc[middle, "x_m"] += SHIFT_M
-    particles.to_csv(folder / "packing.csv", index=False)
-    shutil.copyfile(packing.folder / "packing.json", folder / "packing.json")
-    return Packing.read(folder)
 
 
 def _native_scheme(start: Case, engine: str) -> Variant | str:

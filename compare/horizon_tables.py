@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import pandas as pd
 
+from crossdem.adapters.packing import SHIFT_M
+
 from . import checks, wording
 from .horizon import (
     COMPARED_S,
@@ -13,7 +15,6 @@ from .horizon import (
     LIMIT_M,
     LOST_SHARE,
     NOTICED_M,
-    SHIFT_M,
     EngineHorizon,
     Horizon,
 )

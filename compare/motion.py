@@ -98,6 +98,11 @@ def surface_bump_m(dataset: Dataset) -> float:
     return float((rise_m[left].max() + rise_m[~left].max()) / 2)
 
 
+def surface_heave_m(dataset: Dataset) -> float:
+    """Rise of the surface that the bar causes [m]: mean over all columns beside the bar; > 0 is up."""
+    return float((surface_profile(dataset, -1) - surface_profile(dataset, 0)).mean())
+
+
 def layers(dataset: Dataset) -> np.ndarray:
     """(N,) number of the layer, from 0 at the floor, in which each particle started: the chalk lines' layers."""
     height_m = dataset.case["marks"]["layer_height_m"]

@@ -45,11 +45,14 @@ QUANTITIES = {
         Quantity("mean resistance", "N", resistance.mean_resistance_N, of_table=True),
         Quantity("work of the bar", "J", resistance.work_J, of_table=True),
         Quantity("slope over depth", "N/m", resistance.resistance_slope_N_m, of_table=True),
+        Quantity("exponent over depth", "", resistance.resistance_exponent, of_table=True),
         Quantity("bearing factor", "", resistance.bearing_factor),
         Quantity("tip share", "", resistance.tip_share, of_table=True),
         Quantity("shaft share", "", resistance.shaft_share, of_table=True),
         Quantity("fluctuation", "N", resistance.fluctuation_N, of_table=True),
         Quantity("contacts per particle", "", resistance.contacts_per_particle),
+        Quantity("kinetic energy", "J", resistance.kinetic_energy_J, of_table=True),
+        Quantity("surface heave", "m", motion.surface_heave_m),
         Quantity("surface bump", "m", motion.surface_bump_m),
         Quantity("movement near the bar", "m", motion.near_bar_movement_m),
     )
@@ -84,12 +87,3 @@ def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
     near = difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"unknown {what} {name!r}; {hint}known: {', '.join(known)}"
-
-
-def endpoints(datasets: list[Dataset]) -> pd.DataFrame:
-    """Every quantity of every run: one row per (engine, seed), one column per quantity."""
-    index = pd.MultiIndex.from_tuples(
-        [(dataset.engine, dataset.seed) for dataset in datasets], names=["engine", "seed"]
-    )
-    rows = [[quantity.of(dataset) for quantity in QUANTITIES.values()] for dataset in datasets]
-    return pd.DataFrame(rows, index=index, columns=list(QUANTITIES), dtype=float)

@@ -81,6 +81,22 @@ def shaft_share(resistance: pd.DataFrame) -> float:
     return float(window["shaft_force_y_N"].mean() / window["force_y_N"].mean())
 
 
+def kinetic_energy_J(resistance: pd.DataFrame) -> float:
+    """Kinetic energy of all particles, rotation included [J], mean over the deep window."""
+    return float(deep_window(resistance)["kinetic_energy_J"].mean())
+
+
+def resistance_exponent(resistance: pd.DataFrame) -> float:
+    """Exponent n of a resistance that grows as depth^n (no unit): slope of its logarithm, per cm, over that of the depth.
+
+    NaN where the mean of some cm is not above 0.
+    """
+    mean_N = resistance_profile(resistance)["mean_N"]
+    if len(mean_N) < 2 or not (mean_N > 0).all():
+        return float("nan")
+    return float(np.polyfit(np.log(mean_N.index), np.log(mean_N), deg=1)[0])
+
+
 def contacts_per_particle(dataset: Dataset) -> float:
     """Overlapping pairs of particles over the number of particles, mean over the penetration."""
     return float(dataset.resistance["contacts"].mean() / len(dataset.radius_m))

@@ -59,6 +59,7 @@ def dataset(
     run_case: Case,
     engine: str = "native",
     seed: int = 1,
+    twin: int = 0,
     *,
     factor: float = 1.0,  # of the resistance
     noise: float = 0.0,  # fluctuation along the way, share of the resistance
@@ -92,6 +93,7 @@ def dataset(
         "case_hash": run_case.hash,
         "packing_hash": packing_hash or hashlib.sha256(b"packing %d" % seed).hexdigest(),
         "seed": seed,
+        "twin": twin,
         "engine": engine,
         "engine_version": f"{engine} 1.0",
         "compiler": "g++ 12.2.0 -O3" if engine == "native" else None,

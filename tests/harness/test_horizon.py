@@ -13,7 +13,7 @@ from test_report import Page
 
 from crossdem import ExitCode
 from crossdem.adapters.case import CaseError, load_case
-from crossdem.adapters.packing import make_packing
+from crossdem.adapters.packing import make_packing, make_twin
 from crossdem.adapters.workspace import Workspace
 from crossdem.compare import (
     horizon_report,
@@ -274,13 +274,13 @@ def test_there_are_frames_before_the_end_of_the_comparison(interval_s):
 def test_the_twin_is_the_packing_with_one_particle_in_its_middle_shifted(case, tmp_path):
     workspace = Workspace(tmp_path / "out")
     packing = make_packing(case, 1, workspace.packing_folder(case, 1))
-    twin = horizon_runs.shifted(packing, workspace)
+    twin = make_twin(packing, 1, workspace.twin_folder(packing, 1))
     aside = twin.particles - packing.particles
     [moved_one] = np.flatnonzero(aside["x_m"])
     assert aside["x_m"][moved_one] == pytest.approx(1e-12, rel=1e-3)
     assert not aside.drop(columns="x_m").to_numpy().any()
     assert packing.particles["x_m"][moved_one] == pytest.approx(0.02, abs=0.005)
-    assert twin.hash != packing.hash and twin.seed == packing.seed
+    assert twin.hash != packing.hash and (twin.seed, twin.twin) == (packing.seed, 1)
 
 
 def test_particles_placed_by_hand_need_no_bar_and_no_bed_but_may_not_settle_under_a_bar(tmp_path):

@@ -72,7 +72,7 @@ def manifest(case, packing):
     return (
         dict.fromkeys(keys.split(), "")
         | counts
-        | {"schema_version": 1, "seed": 1, "time_step_s": 5e-5}
+        | {"schema_version": 1, "seed": 1, "twin": 0, "time_step_s": 5e-5}
     )
 
 
