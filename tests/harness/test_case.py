@@ -48,6 +48,14 @@ def test_an_override_changes_the_value_and_the_hash():
     assert case.hash != load_case(REFERENCE).hash
 
 
+def test_runs_are_named_by_all_of_a_case_but_its_title_and_checks():
+    case = load_case(REFERENCE)
+    judged_otherwise = load_case(REFERENCE, ["title='another'", "check=[]"])
+    assert judged_otherwise.run_hash == case.run_hash and judged_otherwise.hash != case.hash
+    for override in ("gravity_m_s2=9.8", "gates.contacts_share=0.02", "marks.near_bar_m=0.02"):
+        assert load_case(REFERENCE, [override]).run_hash != case.run_hash
+
+
 def test_an_override_is_validated_like_the_file():
     with pytest.raises(CaseError, match=r"contact\.particle_wall\.friction: "):
         load_case(REFERENCE, ["contact.particle_wall.friction=-1"])

@@ -100,6 +100,12 @@ def test_the_bump_is_the_mean_of_the_largest_rise_on_either_side():
     assert bump_m == pytest.approx(0.003)
 
 
+def test_the_heave_is_the_mean_rise_of_all_columns_beside_the_bar():
+    assert motion.surface_heave_m(level_bed()) == 0
+    heave_m = motion.surface_heave_m(level_bed(rise_left_m=0.004, rise_right_m=0.003))
+    assert heave_m == pytest.approx(0.007 / 14)  # of 15 columns, one lies within the bar
+
+
 def test_layers_are_counted_from_the_floor_and_stay_with_the_particle():
     run = bed(
         [[0.01, 0.029], [0.01, 0.031], [0.01, 0.1]], [[0.01, 0.05], [0.01, 0.02], [0.01, 0.02]]

@@ -66,6 +66,22 @@ def test_tip_and_shaft_share_are_of_the_force_and_sum_up_to_one():
     assert resistance.tip_share(table) == pytest.approx(0.7)
 
 
+@pytest.mark.parametrize("exponent", [0.8, 1.0, 1.3])
+def test_the_exponent_is_that_of_a_power_law_as_far_as_means_over_a_cm_show_it(exponent):
+    table = synthetic.resistance_table(50 * DEPTH_M**exponent, DEPTH_M)
+    assert resistance.resistance_exponent(table) == pytest.approx(exponent, abs=0.02)
+
+
+def test_a_resistance_that_is_not_above_zero_has_no_exponent():
+    assert np.isnan(resistance.resistance_exponent(linear(16, start_N=-0.5)))
+
+
+def test_the_kinetic_energy_is_its_mean_over_the_deep_third_and_on():
+    table = synthetic.resistance_table(16 * DEPTH_M, DEPTH_M)
+    table["kinetic_energy_J"] = np.where(DEPTH_M < 0.03 - 1e-9, 1.0, 3e-6)
+    assert resistance.kinetic_energy_J(table) == pytest.approx(3e-6)
+
+
 def test_contacts_per_particle_counts_each_pair_once():
     run = synthetic.dataset(synthetic.case())
     assert resistance.contacts_per_particle(run) == pytest.approx(1700 / 944)
