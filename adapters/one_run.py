@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import errno
 import shutil
 import time
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
 
+from . import run_folder
+from .attempt import Attempt
 from .dataset import Dataset, DatasetError
 from .dataset_faults import SCHEMA_VERSION, bar_speed_m_s
 from .engine import OUTPUT, Engine, EngineFailure
@@ -31,30 +34,39 @@ class Limits:
 class Run:
     """One request, its folders and its process."""
 
-    def __init__(self, request: RunRequest, engine: Engine, key: str, out_dir: Path):
+    def __init__(
+        self,
+        request: RunRequest,
+        engine: Engine,
+        key: str,
+        out_dir: Path,
+        journal: Path | None = None,
+    ):
         self.request = request
         self.case = request.case
         self.engine = engine
         self.key = key
-        name = run_name(request.packing, engine, key)
-        self.folder = out_dir / "runs" / name
-        self.failed_folder = out_dir / "failed" / name
-        self.work_dir = out_dir / "runs" / f".{name}.work"
+        self.out_dir = out_dir
+        self.name = run_name(request.packing, engine, key)
+        self.folder = out_dir / "runs" / self.name
+        self.failed_folder = out_dir / "failed" / self.name
+        self._attempt = Attempt(self.name, self.folder.parent, journal)
+        self.work_dir = self._attempt.work_dir
         self.started: datetime | None = None  # None: reused, or not yet
         self.ending: Ending | None = None
         self._process: Process | None = None
 
     def start(self) -> None:
         """Write the input and start the process. Raises EngineNotFound, OSError."""
-        self.discard()
-        shutil.rmtree(self.failed_folder, ignore_errors=True)
-        prepare(self.case, self.request.packing, self.engine, self.work_dir)
-        command = self.engine.command(self.case, self.work_dir)
+        self._attempt.begin()
+        ranks = self.request.ranks
+        prepare(self.case, self.request.packing, self.engine, self.work_dir, ranks)
+        command = run_folder.command(self.case, self.engine, self.work_dir, ranks)
         command[command.index(self.engine.program)] = self.engine.executable()
         self.started = datetime.now(timezone.utc)
         self._samples = LineCounter(self.work_dir / self.engine.samples_file)
         self._last_sample = time.monotonic()
-        environment = self.engine.environment()
+        environment = run_folder.environment(self.engine, ranks)
         self._process = Process(command, self.work_dir, environment, self.work_dir / LOG)
 
     def poll(self, limits: Limits) -> bool:
@@ -91,16 +103,18 @@ class Run:
             ) from error
 
     def keep(self, dataset: Dataset) -> None:
-        """Put the finished run in its place. Raises OSError."""
+        """Put the finished run in its place, unless another attempt has been there first. Raises OSError."""
         for name in self.engine.kept_output:
             if (self.work_dir / OUTPUT / name).exists():
                 shutil.copyfile(self.work_dir / OUTPUT / name, self.work_dir / name)
         if self.engine.log_noise:
             log = self.work_dir / LOG
             log.write_bytes(self.engine.log_noise.sub(b"", log.read_bytes()))
-        shutil.rmtree(self.folder, ignore_errors=True)  # whatever is there could not be reused
-        dataset.write(self.folder, extra_files_from=self.work_dir, without=OUTPUT)
-        self.discard()
+        whole = self._attempt.whole_dir
+        dataset.write(whole, extra_files_from=self.work_dir, without=OUTPUT)
+        published = self._publish(whole)
+        shutil.rmtree(self.failed_folder, ignore_errors=True)
+        self._attempt.end("published" if published else "was there")
 
     def put_aside(self, reason: str) -> str:
         """Leave what there is for people to look at; returns the whole message."""
@@ -111,19 +125,45 @@ class Run:
             return message
         try:
             self.failed_folder.parent.mkdir(exist_ok=True)
+            shutil.rmtree(self.failed_folder, ignore_errors=True)
             self.work_dir.rename(self.failed_folder)
         except OSError:  # a full disk, again
+            self._attempt.end("failed", leaving=True)
             return f"{message}; see {self.work_dir / LOG}"
+        self._attempt.end("failed")
         return f"{message}; see {self.failed_folder / LOG}"
 
     def stop(self) -> None:
         """End the process, if there is one, and leave nothing."""
         if self._process:
             self._process.kill()
-        self.discard()
+        self._attempt.end("stopped")
 
-    def discard(self) -> None:
-        shutil.rmtree(self.work_dir, ignore_errors=True)
+    def finished(self) -> Dataset | None:
+        """The dataset that another attempt, or an earlier call, left for the same run, if it is whole."""
+        try:
+            dataset = Dataset.read(self.folder)
+        except DatasetError:
+            return None
+        return dataset if dataset.manifest["run_key"] == self.key else None
+
+    def _publish(self, whole: Path) -> bool:
+        """Whether the dataset in `whole` is now in its place: the first that is there stays, as readers may have it open."""
+        while True:
+            try:
+                whole.rename(self.folder)
+                return True
+            except OSError as error:
+                if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+                    raise
+            if self.finished():
+                return False
+            broken = whole.with_suffix(".broken")  # one step takes it away, whole or not at all
+            try:
+                self.folder.rename(broken)
+            except FileNotFoundError:  # another attempt has done so
+                continue
+            shutil.rmtree(broken)
 
     def _overdue(self, limits: Limits) -> str | None:
         self.progress()
@@ -160,7 +200,7 @@ class Run:
             "engine_version": self.engine.version(),
             "compiler": self.engine.compiler(),
             "time_step_s": schedule.step_s,
-            "command": self.engine.command(case, self.work_dir),
+            "command": run_folder.command(case, self.engine, self.work_dir, self.request.ranks),
             "started_utc": self.started.isoformat(timespec="seconds"),
             "wall_s": round(self.ending.wall_s, 3),
             "cpu_s": round(self.ending.cpu_s, 3),

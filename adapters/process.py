@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -27,13 +28,16 @@ class Ending:
 
 
 class Process:
-    """A process with a session of its own, so that its children end with it. Its output goes to a log."""
+    """A process with a session of its own, so that its children end with it. Its output goes to a log.
+
+    It is ended when the thread that started it is gone, however that came.
+    """
 
     def __init__(self, command: list[str], folder: Path, environment: dict[str, str], log: Path):
         self._started = time.monotonic()
         with open(log, "wb") as output:
             self._process = subprocess.Popen(
-                command,
+                [*_bound_to_us(), *command],
                 cwd=folder,
                 env=os.environ | environment,
                 stdin=subprocess.DEVNULL,
@@ -59,13 +63,13 @@ class Process:
         self._process.returncode = os.waitstatus_to_exitcode(status)
         return Ending(self._process.returncode, self.wall_s, usage.ru_utime + usage.ru_stime)
 
-    def kill(self) -> None:
-        """End it and its children, and wait for that."""
+    def kill(self, number: signal.Signals = signal.SIGTERM, grace_s: float = GRACE_S) -> None:
+        """Ask it and its children to end by the signal `number`, end them `grace_s` later, and wait for that."""
         if self._process.returncode is not None:
             return
-        self._signal(signal.SIGTERM)
+        self._signal(number)
         try:
-            self._process.wait(GRACE_S)
+            self._process.wait(grace_s)
         except subprocess.TimeoutExpired:
             pass
         self._signal(signal.SIGKILL)
@@ -76,6 +80,12 @@ class Process:
             os.killpg(self._process.pid, number)
         except ProcessLookupError:
             pass
+
+
+def _bound_to_us() -> list[str]:
+    """What is put before a command that shall not outlive this process; nothing where the system lacks it."""
+    found = shutil.which("setpriv")
+    return [found, "--pdeathsig", "KILL"] if found else []
 
 
 class LineCounter:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from .dataset import Dataset, DatasetError
+from . import mpi
+from .attempt import clear_away
+from .dataset import Dataset
 from .engine import EngineFailure, EngineNotFound
 from .engines import get_engine
 from .gates import REFERENCE, contacts_at_rest, with_gates
@@ -39,15 +42,18 @@ def run_all(
     jobs: int,
     on_progress: Progress = lambda request, share, seconds_left: None,
     limits: Limits = Limits(),
+    journal: Path | None = None,
 ) -> list[RunResult]:
     """Run or reuse every request, at most `jobs` at a time; one result per request, in their order.
 
     Datasets go to `out_dir`/runs. A run that fails leaves what it had in `out_dir`/failed, and the others go on.
-    Whatever ends this function early, such as Ctrl-C, ends the processes too.
+    Whatever ends this function early, such as Ctrl-C, ends the processes too. Each attempt at a run leaves its story
+    in `journal`, a folder.
     """
     out_dir = Path(out_dir)
     (out_dir / "runs").mkdir(parents=True, exist_ok=True)
-    queue = _Queue(out_dir, jobs, on_progress, limits)
+    clear_away(out_dir / "runs")
+    queue = _Queue(out_dir, jobs, on_progress, limits, journal)
     try:
         for request in requests:
             queue.admit(request)
@@ -57,32 +63,49 @@ def run_all(
     return [queue.results[id(request)] for request in requests]
 
 
+def look_up(
+    request: RunRequest, out_dir: Path, journal: Path | None = None
+) -> tuple[Run | None, RunResult | None]:
+    """The run that is to be made or reused; or why there can be none."""
+    engine = get_engine(request.engine_name)
+    if reasons := engine.unsupported(request.case):
+        why = f"{engine.name}: {'; '.join(reasons)}"
+        return None, RunResult(request, None, why, "unsupported")
+    try:
+        key = run_key(request.case, request.packing, engine, request.ranks)
+        if request.ranks > 1:
+            mpi.check(os.environ.get("PATH"))
+    except EngineNotFound as error:
+        return None, RunResult(request, None, str(error), "missing")
+    return Run(request, engine, key, out_dir, journal), None
+
+
 class _Queue:
-    def __init__(self, out_dir: Path, jobs: int, on_progress: Progress, limits: Limits):
+    def __init__(
+        self,
+        out_dir: Path,
+        jobs: int,
+        on_progress: Progress,
+        limits: Limits,
+        journal: Path | None,
+    ):
         self._out_dir = out_dir
+        self._journal = journal
         self._jobs = jobs
         self._on_progress = on_progress
         self._limits = limits
         self._waiting: list[Run] = []
         self._running: list[Run] = []
         self._ended: list[tuple[Run, Dataset]] = []  # until the contacts for their gates are known
-        self._native_contacts: dict[tuple[str, str], int] = {}  # at the end of the rest, by _bed
+        self._native_contacts: dict[tuple[str, str], int] = {}  # at the end of the rest, by bed
         self.results: dict[int, RunResult] = {}
 
     def admit(self, request: RunRequest) -> None:
         """Answer what needs no process, and queue the rest."""
-        engine = get_engine(request.engine_name)
-        if reasons := engine.unsupported(request.case):
-            return self._answer(
-                request, "unsupported", failure=f"{engine.name}: {'; '.join(reasons)}"
-            )
-        try:
-            run = Run(
-                request, engine, run_key(request.case, request.packing, engine), self._out_dir
-            )
-        except EngineNotFound as error:
-            return self._answer(request, "missing", failure=str(error))
-        if dataset := _finished(run):
+        run, answer = look_up(request, self._out_dir, self._journal)
+        if answer:
+            self.results[id(request)] = answer
+        elif dataset := run.finished():
             self._end(run, dataset)
         else:
             self._waiting.append(run)
@@ -134,19 +157,19 @@ class _Queue:
     def _end(self, run: Run, dataset: Dataset) -> None:
         self._ended.append((run, dataset))
         if run.engine.name == REFERENCE:
-            self._native_contacts[_bed(run)] = contacts_at_rest(dataset)
+            self._native_contacts[bed(run)] = contacts_at_rest(dataset)
 
     def _keep_ended(self) -> None:
         """Finish the runs whose gates need not wait for a native run."""
         unfinished = [*self._waiting, *self._running]
-        awaited = {_bed(run) for run in unfinished if run.engine.name == REFERENCE}
-        ready = [entry for entry in self._ended if _bed(entry[0]) not in awaited]
+        awaited = {bed(run) for run in unfinished if run.engine.name == REFERENCE}
+        ready = [entry for entry in self._ended if bed(entry[0]) not in awaited]
         for entry in ready:
             self._ended.remove(entry)
             self._keep(*entry)
 
     def _keep(self, run: Run, dataset: Dataset) -> None:
-        native_contacts = self._native_contacts.get(_bed(run))
+        native_contacts = self._native_contacts.get(bed(run))
         gated = dataset  # a run that is there keeps the gates it has, where there is nothing to set them by anew
         if run.started or native_contacts is not None:
             gated = with_gates(dataset, native_contacts)
@@ -176,15 +199,6 @@ class _Queue:
         self.results[id(request)] = RunResult(request, folder, failure, status, exit_status)
 
 
-def _bed(run: Run) -> tuple[str, str]:
+def bed(run: Run) -> tuple[str, str]:
     """What names the bed that a run loads: variants of a case share their packings, and rest differently."""
     return run.case.run_hash, run.request.packing.hash
-
-
-def _finished(run: Run) -> Dataset | None:
-    """The dataset that an earlier call left for the same run, if it is whole."""
-    try:
-        dataset = Dataset.read(run.folder)
-    except DatasetError:
-        return None
-    return dataset if dataset.manifest["run_key"] == run.key else None

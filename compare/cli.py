@@ -1,26 +1,34 @@
 """The command line `crossdem`: its options and exit codes. What the commands do is in commands.py."""
 
-import os
 import signal
 import sys
 import traceback
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 from crossdem import ExitCode, __version__
 from crossdem.adapters.case import CaseError
 from crossdem.adapters.dataset import DatasetError
 from crossdem.adapters.engines import DEFAULT_ENGINES, ENGINES
+from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.solver import SolverError
+from crossdem.adapters.workflow.snakemake import WorkflowError, profile_folder
 from crossdem.adapters.workspace import WorkspaceError
 
 from . import commands
 from .ingredients import TARGETS
+from .runs import TIERS, WITHOUT_TIER, cores
 from .doctor import doctor as examine
 
 
 def _engine_names(context, parameter, text: str) -> list[str]:
+    if context.params.get("replay"):
+        if text.strip() == "none":
+            return []
+        if context.get_parameter_source(parameter.name) is ParameterSource.DEFAULT:
+            return [REFERENCE]
     names = list(dict.fromkeys(name.strip() for name in text.split(",")))
     for name in names:
         if name not in ENGINES:
@@ -65,7 +73,74 @@ def _seeds_of(default: int, help_text: str):
     )
 
 
+def _of_tier(which: int):
+    """Packings (0) or twins (1), as they were asked for, else as the tier has them."""
+
+    def chosen(context, parameter, value: int | None) -> int:
+        return (
+            value if value is not None else TIERS.get(context.meta.get(_TIER), WITHOUT_TIER)[which]
+        )
+
+    return chosen
+
+
+def _profile_name(context, parameter, name: str | None) -> str | None:
+    if name:
+        try:
+            profile_folder(name)
+        except WorkflowError as error:
+            raise click.BadParameter(str(error)) from error
+    return name
+
+
+def _jobs_of(context, parameter, jobs: int | None) -> int | None:
+    return jobs or (None if context.params.get("profile") else cores())
+
+
 _seeds = _seeds_of(2, "How many packings; every engine runs each of them.")
+_TIER = "crossdem.tier"
+_tier = click.option(
+    "--tier",
+    type=click.Choice(list(TIERS)),
+    is_eager=True,
+    expose_value=False,
+    callback=lambda context, parameter, tier: context.meta.update({_TIER: tier}),
+    help="How large the ensemble is: "
+    + ", ".join(
+        f"{name} {seeds} packings with {twins} twins" for name, (seeds, twins) in TIERS.items()
+    )
+    + ". --seeds and --twins come first.",
+)
+_ensemble = [
+    _tier,
+    click.option(
+        "--seeds",
+        type=click.IntRange(1, 1000),
+        callback=_of_tier(0),
+        help="How many packings; every engine runs each of them. [default: 2]",
+    ),
+    click.option(
+        "--twins",
+        type=click.IntRange(0, 100),
+        callback=_of_tier(1),
+        help="How many twins of each packing beside itself, one particle moved by 1e-12 m. [default: 0]",
+    ),
+]
+_profile = click.option(
+    "--profile",
+    metavar="NAME",
+    is_eager=True,
+    callback=_profile_name,
+    help="Run on a cluster: slurm, or the folder of a Snakemake profile. [default: on the cores of this machine]",
+)
+_ranks = click.option(
+    "--mpi-ranks",
+    "ranks",
+    type=click.IntRange(1, 1024),
+    default=1,
+    show_default=True,
+    help="MPI processes per run of LIGGGHTS; the other engines take one.",
+)
 _out = click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -75,8 +150,25 @@ _out = click.option(
 _jobs = click.option(
     "--jobs",
     type=click.IntRange(1),
-    default=len(os.sched_getaffinity(0)),
-    help="How many processes at a time. [default: one per core]",
+    callback=_jobs_of,
+    help="How many processes at a time, or tasks handed in with --profile. [default: one per core, or the profile's]",
+)
+
+
+_replay = click.option(
+    "--replay",
+    is_flag=True,
+    is_eager=True,
+    help="Run only --engines (by default native; none: not one) here, on recorded packings, and take the runs of all "
+    "others from the record.",
+)
+_record = click.option(
+    "--record",
+    "-o",
+    type=click.Path(path_type=Path),
+    default=Path("reference_cases/expected"),
+    show_default=True,
+    help="The folder of recorded ensembles.",
 )
 
 
@@ -98,7 +190,7 @@ def cli():
 
 
 @cli.command()
-@_with(_case, _engines, _seeds, _out, _overrides, _jobs)
+@_with(_case, _replay, _engines, *_ensemble, _out, _overrides, _jobs, _profile, _ranks, _record)
 def check(**options):
     """Run CASE in every engine, compare, and end with a verdict and a report.
 
@@ -112,7 +204,7 @@ def check(**options):
 
 
 @cli.command()
-@_with(_case, _engines, _seeds, _out, _overrides, _jobs)
+@_with(_case, _engines, *_ensemble, _out, _overrides, _jobs, _profile, _ranks)
 def run(**options):
     """Run CASE in every engine, without comparing."""
     return commands.run(**options)
@@ -165,7 +257,7 @@ def compare(**options):
     type=click.IntRange(1, 1000),
     help="On how many of them the other code itself runs. [default: all]",
 )
-@_with(_out, _overrides, _jobs)
+@_with(_out, _overrides, _jobs, _profile)
 def explain(**options):
     """Walk from the paper's scheme to another code, and say what each ingredient changes.
 
@@ -205,6 +297,66 @@ def stability(**options):
 
 
 @cli.command()
+@_with(_case, _engines, *_ensemble)
+@click.option(
+    "--native-twins",
+    type=click.IntRange(0, 100),
+    help="Twins of the native solver, where it is to have more of them than the others: calibrate deals with them. "
+    "[default: as --twins]",
+)
+@click.option(
+    "--variant",
+    "variants",
+    metavar="KEY=VALUE[,...]",
+    multiple=True,
+    help="Record the case with these values changed, too. May be repeated.",
+)
+@click.option(
+    "--variant-engines",
+    default=REFERENCE,
+    show_default=True,
+    callback=_engine_names,
+    help="Which engines run the variants.",
+)
+@click.option(
+    "--variant-seeds",
+    type=click.IntRange(1, 1000),
+    help="How many packings of each variant. [default: as --seeds]",
+)
+@_with(_record, _out, _jobs, _profile)
+def record(**options):
+    """Run CASE, and keep of the runs what a comparison reads: few enough numbers to stand beside the case.
+
+    `check --replay` compares with them, `calibrate` judges the judge on them. What is recorded of each variant goes to
+    a folder of its own, NAME of the case/VARIANT; what was recorded there before is replaced.
+    """
+    return commands.record(**options)
+
+
+@cli.command()
+@click.argument(
+    "case_file",
+    metavar="[CASE]",
+    type=click.Path(path_type=Path),
+    default=Path("reference_cases/bar_penetration.toml"),
+)
+@click.option(
+    "--splits",
+    type=click.IntRange(20, 100_000),
+    default=200,
+    show_default=True,
+    help="Random splits of the recorded native runs, for each size of a comparison.",
+)
+@_with(_record, _out, _overrides, _jobs)
+def calibrate(**options):
+    """Judge the judge: how often it errs about recorded native runs, of which the truth is known.
+
+    Ends with 0 when its error rates are as low as they are to be, 1 when not, 4 when there are too few recorded runs.
+    """
+    return commands.calibrate(**options)
+
+
+@cli.command()
 def doctor():
     """Say which engines are here, and what to install."""
     return examine()
@@ -224,7 +376,7 @@ def main(arguments: list[str] | None = None) -> int:
     except (CaseError, DatasetError, WorkspaceError) as error:
         click.echo(error, err=True)
         return ExitCode.BAD_INPUT
-    except SolverError as error:
+    except (SolverError, WorkflowError) as error:
         click.echo(error, err=True)
         return ExitCode.ENGINE_FAILED
     except Exception:

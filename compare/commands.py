@@ -1,5 +1,6 @@
 """What the commands of the command line do; each returns its exit code."""
 
+from collections.abc import Iterable
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -8,32 +9,57 @@ from rich.console import Console
 
 from crossdem import ExitCode
 from crossdem.adapters.case import Case, CaseError, load_case
-from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.dataset import Dataset, DatasetError
 from crossdem.adapters.engines import unknown_engines
 from crossdem.adapters.workspace import Workspace
 
-from .comparison import case_faults, compare_runs, comparison_faults
+from .comparison import ComparisonError, case_faults, compare_runs
+from .ensemble import Ensemble
 from .explain import explain_case
 from .horizon import Horizon
 from .horizon_runs import find_horizon, horizon_of_runs
-from .runs import Runs, run_engines, write_inputs
+from .intake import native_first
+from .record_command import plans_of, record_case
+from .recorded import find_record
+from .replay import gated, replayed, restore_packings
+from .runs import Runs, cores, run_engines, write_inputs
 from .stability import FAILED
 from .stability_runs import map_stability
 from .summary import print_summary
 
 
-def check(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
+def check(
+    case_file, engines, seeds, twins, out, overrides, jobs, profile, ranks, replay, record
+) -> ExitCode:
     if case_file.is_dir():
-        return _check_ladder(case_file, engines, out, overrides, jobs)
+        return _check_ladder(case_file, engines, out, overrides, jobs or cores())
     case = _load(case_file, overrides)
     if case.resolved["particle"]:  # no bed, of which there could be seeds
-        return _check_ladder(case_file, engines, out, overrides, jobs)
+        return _check_ladder(case_file, engines, out, overrides, jobs or cores())
     _needs_bar(case)
+    if replay:
+        return _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, record)
     with _workspace(case, overrides, out) as workspace:
-        runs = run_engines(case, engines, seeds, workspace, jobs, Console())
-        found = horizon_of_runs(case, engines, runs.failures, workspace, jobs, Console())
-    datasets = [Dataset.read(folder) for folder in runs.folders]
-    return _report(case, datasets, runs, workspace, found)
+        runs = run_engines(case, engines, seeds, workspace, jobs, Console(), twins, profile, ranks)
+        found = horizon_of_runs(case, engines, runs.failures, workspace, jobs or cores(), Console())
+    return _report(case, map(Dataset.read, runs.folders), runs, workspace, found)
+
+
+def _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, folder) -> ExitCode:
+    record = find_record(case, folder)
+    others = replayed(record, engines, seeds, twins)
+    runs, found = Runs((), {}), None
+    with _workspace(case, overrides, out, "-replay") as workspace:
+        if engines:
+            restore_packings(case, record, seeds, workspace)
+            runs = run_engines(
+                case, engines, seeds, workspace, jobs, Console(), twins, profile, ranks
+            )
+            found = horizon_of_runs(
+                case, engines, runs.failures, workspace, jobs or cores(), Console()
+            )
+    datasets = gated(map(Dataset.read, runs.folders), others)
+    return _report(case, datasets, runs, workspace, found, others)
 
 
 def _check_ladder(*arguments) -> ExitCode:
@@ -42,10 +68,12 @@ def _check_ladder(*arguments) -> ExitCode:
     return check_ladder(*arguments)
 
 
-def run(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
+def run(case_file, engines, seeds, twins, out, overrides, jobs, profile, ranks) -> ExitCode:
     case = _load(case_file, overrides)
     with _workspace(case, overrides, out) as workspace:
-        return _tell(run_engines(case, engines, seeds, workspace, jobs, Console()))
+        return _tell(
+            run_engines(case, engines, seeds, workspace, jobs, Console(), twins, profile, ranks)
+        )
 
 
 def generate(case_file, engines, seeds, out, overrides, jobs) -> ExitCode:
@@ -60,23 +88,29 @@ def resolve(case_file, overrides) -> ExitCode:
 
 
 def compare(folders, out) -> ExitCode:
-    datasets = [Dataset.read(folder) for folder in folders]
+    Dataset.read(folders[0])  # refuses what is no run
     case = Case.from_canonical((folders[0] / "inputs" / "case.json").read_bytes())
     _needs_bar(case)
-    if faults := comparison_faults(case, datasets):
-        raise CaseError(faults)
-    return _report(
-        case, datasets, Runs((), {}), Workspace(out or Path("results") / f"{case.name}-compare")
-    )
+    workspace = Workspace(out or Path("results") / f"{case.name}-compare")
+    try:
+        return _report(case, map(Dataset.read, native_first(folders)), Runs((), {}), workspace)
+    except DatasetError:
+        workspace.discard_if_new()
+        raise
+    except ComparisonError as error:
+        workspace.discard_if_new()
+        raise CaseError(error.faults) from error
 
 
-def explain(case_file, origin, target, seeds, engine_seeds, out, overrides, jobs) -> ExitCode:
+def explain(
+    case_file, origin, target, seeds, engine_seeds, out, overrides, jobs, profile
+) -> ExitCode:
     from .explain_report import print_explanation, write_explanation  # here: as in _report
 
     case = _load(case_file, [*overrides, f"scheme.name={origin}"])
     with _workspace(case, overrides, out) as workspace:
         attribution = explain_case(
-            case, target, seeds, engine_seeds or seeds, workspace, jobs, Console()
+            case, target, seeds, engine_seeds or seeds, workspace, jobs, Console(), profile
         )
         page = write_explanation(attribution, workspace.root / f"explain-{target}")
     print_explanation(attribution, page)
@@ -108,6 +142,24 @@ def stability(case_file, steps_s, seeds, out, overrides, jobs) -> ExitCode:
     return ExitCode.ENGINE_FAILED if failed else ExitCode.AGREES
 
 
+def record(case_file, variants, record, out, jobs, profile, **ensemble) -> ExitCode:
+    plans = [(plan, _load(case_file, plan.overrides)) for plan in plans_of(variants, **ensemble)]
+    for _, case in plans:
+        _needs_bar(case)
+    with _workspace(plans[0][1], [], out) as workspace:
+        record_case(case_file, plans, record, workspace, jobs, profile, Console())
+    return ExitCode.AGREES
+
+
+def calibrate(case_file, overrides, splits, record, out, jobs) -> ExitCode:
+    from .calibration_command import calibrate_case  # here: as in _report
+
+    case = _load(case_file, overrides)
+    recorded = find_record(case, record)
+    with _workspace(case, overrides, out) as workspace:
+        return calibrate_case(case, recorded, splits, workspace.root / "calibrate", jobs)
+
+
 def _needs_bar(case: Case) -> None:
     """Raises CaseError for what no comparison of beds can be made of."""
     if case.resolved["particle"]:
@@ -126,10 +178,10 @@ def _load(case_file: Path, overrides: list[str]) -> Case:
 
 
 @contextmanager
-def _workspace(case: Case, overrides: list[str], out: Path | None):
+def _workspace(case: Case, overrides: list[str], out: Path | None, purpose: str = ""):
     """The output folder; a variant's own by default. Gone again when it was new and the case turns out to be at fault."""
     variant = f"-{case.hash[:8]}" if overrides else ""
-    workspace = Workspace(out or Path("results") / f"{case.name}{variant}")
+    workspace = Workspace(out or Path("results") / f"{case.name}{variant}{purpose}")
     try:
         yield workspace
     except CaseError:
@@ -139,14 +191,15 @@ def _workspace(case: Case, overrides: list[str], out: Path | None):
 
 def _report(
     case: Case,
-    datasets: list[Dataset],
+    datasets: Iterable[Dataset],
     runs: Runs,
     workspace: Workspace,
     horizon: Horizon | None = None,
+    recorded: Ensemble | None = None,
 ) -> ExitCode:
     from .report import write_report  # here: its drawing library takes half a second to load
 
-    comparison = compare_runs(case, datasets, runs.failures, runs.unsupported, horizon)
+    comparison = compare_runs(case, datasets, runs.failures, runs.unsupported, horizon, recorded)
     page = write_report(comparison, workspace.root)
     print_summary(comparison, page)
     return comparison.verdict.exit_code

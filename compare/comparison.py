@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -12,13 +12,17 @@ import pandas as pd
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.engines import ENGINES
-from crossdem.adapters.gates import REFERENCE, contacts_at_rest, with_contacts_gate
 
 from .answers import answer_faults
 from .checks import Check, CheckResult, check_faults, evaluate
+from .ensemble import Ensemble, packing_means
 from .horizon import Horizon
-from .quantities import endpoints, unknown_quantities
+from .intake import Intake, failed_gates, missing_runs, other_packings
+from .opinions import Opinions
+from .quantities import QUANTITIES, unknown_quantities
 from .verdict import Verdict, decide
+
+Run = tuple[str, int, int]  # engine, seed, twin
 
 
 class ComparisonError(Exception):
@@ -35,23 +39,39 @@ class Comparison:
 
     case: Case
     engines: tuple[str, ...]  # with and without results
-    datasets: tuple[Dataset, ...]  # in the order of engines, then seeds
+    ensemble: Ensemble  # all runs, recorded ones too
+    endpoints: pd.DataFrame  # ensemble.packing_means of its endpoints
+    datasets: tuple[Dataset, ...]  # twin 0 of each packing, for pictures; none of recorded runs
+    recorded: frozenset[Run]  # runs of the ensemble that were read from a record
     failures: dict[tuple[str, int], str]  # (engine, seed): why there is no dataset
-    endpoints: pd.DataFrame  # quantities.endpoints
     results: tuple[CheckResult, ...]
     verdict: Verdict
     horizon: Horizon | None = None  # None: nothing was compared particle by particle
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        return tuple(sorted({seed for _, seed in self.runs()}))
+        """Of every run asked for, finished or not."""
+        return tuple(sorted({seed for _, seed, *_ in [*self.ensemble.manifests, *self.failures]}))
 
-    def runs(self) -> list[tuple[str, int]]:
-        """(engine, seed) of every run asked for, finished or not."""
-        return [(dataset.engine, dataset.seed) for dataset in self.datasets] + list(self.failures)
+    @property
+    def pairs(self) -> tuple[tuple[str, str], ...]:
+        return tuple(dict.fromkeys(result.pair for result in self.results))
+
+    @functools.cached_property
+    def opinions(self) -> Opinions:
+        """Beside the verdict: no part of it. They take seconds."""
+        return Opinions.of(self.case, self.ensemble)
 
     def of(self, engine: str) -> list[Dataset]:
         return [dataset for dataset in self.datasets if dataset.engine == engine]
+
+    def manifests(self, engine: str) -> dict[Run, dict]:
+        return {run: about for run, about in self.ensemble.manifests.items() if run[0] == engine}
+
+    def packings(self, engine: str) -> pd.DataFrame:
+        """The mean resistance [N] per cm of depth, a row for each of the engine's packings."""
+        profiles = self.ensemble.profiles
+        return packing_means(profiles[profiles.index.get_level_values("engine") == engine])
 
 
 def compare_runs(
@@ -60,60 +80,67 @@ def compare_runs(
     failures: dict[tuple[str, int], str] | None = None,
     unsupported: frozenset[tuple[str, int]] = frozenset(),
     horizon: Horizon | None = None,
+    recorded: Ensemble | None = None,
 ) -> Comparison:
-    """Compare the `datasets` of one `case`; `failures` says for each (engine, seed) without one why.
+    """Compare the `datasets` of one `case`, and with them the `recorded` runs of it; `failures` says for each
+    (engine, seed) without a dataset why.
 
-    Those of them that are `unsupported` make their engine not comparable; it has not failed. `horizon` holds the
-    comparison particle by particle: an engine that differs there differs, whatever the statistics say.
+    The datasets are read one by one, and only twin 0 of each packing stays in memory. Native ones come first: they set
+    the gate on contacts. Failures that are `unsupported` make their engine not comparable; it has not failed. `horizon`
+    holds the comparison particle by particle: an engine that differs there differs, whatever the statistics say.
 
-    Raises ComparisonError when the datasets are not of this case, a run is there twice, or a check makes no sense.
+    Raises ComparisonError when the runs are not of this case, a run is there twice, or a check makes no sense.
     """
     failures = dict(failures or {})
-    engines = in_order(
-        {dataset.engine for dataset in datasets} | {engine for engine, _ in failures}
-    )
-    runs = gated(sorted(datasets, key=lambda run: (engines.index(run.engine), run.seed)))
-    faults = comparison_faults(case, runs)
-    if faults:
+    read = frozenset(recorded.manifests if recorded else ())
+    intake = Intake(case, read)
+    ensemble = Ensemble.of(intake.sound(datasets))
+    if faults := case_faults(case.resolved) + intake.faults:
         raise ComparisonError(faults)
+    ensemble = ensemble.joined(recorded) if recorded else ensemble
+    engines = in_order({*ensemble.engines, *(engine for engine, _ in failures)})
+    order = {engine: number for number, engine in enumerate(engines)}
+    ensemble = ensemble.selected(
+        sorted(ensemble.manifests, key=lambda run: (order[run[0]], *run[1:]))
+    )
 
-    table = endpoints(runs)
-    seeds = {run.seed for run in runs} | {seed for _, seed in failures}
+    endpoints = packing_means(ensemble.endpoints).reindex(columns=list(QUANTITIES))
+    checks = Check.of_case(case.resolved)
     results = tuple(
-        evaluate(check, pair, table, obstacles)
-        for pair, obstacles in _pairs(engines, runs, failures, seeds)
-        for check in Check.of_case(case.resolved)
+        result
+        # the later engine first: liggghts against native
+        for second, first in itertools.combinations(engines, 2)
+        for result in evaluate(
+            checks,
+            (first, second),
+            endpoints,
+            missing_runs((first, second), failures)
+            + failed_gates(ensemble.manifests, (first, second))
+            + other_packings((first, second), ensemble.manifests),
+        )
     )
     failed = {run: why for run, why in failures.items() if run not in unsupported}
     if horizon:
         failed |= {run: f"from the packing: {why}" for run, why in horizon.failures.items()}
+    verdict = decide(
+        engines,
+        results,
+        failed,
+        failed_gates(ensemble.manifests, engines),
+        horizon.strays if horizon else (),
+        ensemble.endpoints.groupby(level=["engine", "seed"]).size().tolist() or [1],
+    )
     return Comparison(
         case,
         engines,
-        runs,
+        ensemble,
+        endpoints,
+        intake.pictured(order),
+        read,
         failures,
-        table,
         results,
-        decide(engines, results, failed, _failed_gates(runs), horizon.strays if horizon else ()),
+        verdict,
         horizon,
-    )
-
-
-def gated(runs: Sequence[Dataset]) -> tuple[Dataset, ...]:
-    """The same runs, each with its gate on contacts where the native run of its packing is among them.
-
-    A run made before, or without, its native counterpart lacks that gate.
-    """
-    contacts = {
-        run.manifest["packing_hash"]: contacts_at_rest(run)
-        for run in runs
-        if run.engine == REFERENCE
-    }
-    return tuple(
-        with_contacts_gate(run, contacts[run.manifest["packing_hash"]])
-        if run.manifest["packing_hash"] in contacts
-        else run
-        for run in runs
     )
 
 
@@ -122,51 +149,7 @@ def case_faults(case: dict) -> list[str]:
     return unknown_quantities(case) + check_faults(case) + answer_faults(case)
 
 
-def comparison_faults(case: Case, datasets: Sequence[Dataset]) -> list[str]:
-    """A line for everything that forbids to compare `datasets` under `case`."""
-    faults = case_faults(case.resolved)
-    for dataset in datasets:
-        if dataset.manifest["case_hash"] != case.hash:
-            faults.append(
-                f"{dataset.engine}, seed {dataset.seed}: run of another case "
-                f"({dataset.manifest['case_hash'][:12]}; this one is {case.hash[:12]})"
-            )
-    runs = Counter((dataset.engine, dataset.seed) for dataset in datasets)
-    faults += [
-        f"{engine}, seed {seed}: given {n} times" for (engine, seed), n in runs.items() if n > 1
-    ]
-    return faults
-
-
 def in_order(engines: Iterable[str]) -> tuple[str, ...]:
     """As ENGINES has them, everywhere; others follow by name."""
     rank = {engine: number for number, engine in enumerate(ENGINES)}
     return tuple(sorted(engines, key=lambda engine: (rank.get(engine, len(rank)), engine)))
-
-
-def _failed_gates(runs: Iterable[Dataset]) -> list[str]:
-    return [
-        f"{run.engine}, seed {run.seed}: {gate['message']}"
-        for run in runs
-        for gate in run.manifest["gates"]
-        if not gate["passed"]
-    ]
-
-
-def _pairs(engines, runs, failures, seeds):
-    """Each pair of engines, the later one first (liggghts against native), with what forbids to compare it."""
-    packing = {(run.engine, run.seed): run.manifest["packing_hash"] for run in runs}
-    for second, first in itertools.combinations(engines, 2):
-        obstacles = []
-        for engine in (first, second):
-            for seed in sorted(seeds):
-                if (engine, seed) not in packing:
-                    why = failures.get((engine, seed), "not run")
-                    obstacles.append(f"{engine}, seed {seed}: {why}")
-        obstacles += _failed_gates([run for run in runs if run.engine in (first, second)])
-        obstacles += [
-            f"seed {seed}: {first} and {second} did not start from the same packing"
-            for seed in sorted(seeds)
-            if len({packing.get((first, seed)), packing.get((second, seed))} - {None}) > 1
-        ]
-        yield (first, second), tuple(obstacles)

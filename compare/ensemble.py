@@ -74,5 +74,7 @@ def _field(dataset: Dataset) -> pd.Series:
 
 
 def _table(rows: dict[tuple[str, int, int], pd.Series]) -> pd.DataFrame:
-    table = pd.concat(rows, axis="columns", names=RUN).T if rows else pd.DataFrame()
+    if not rows:
+        return pd.DataFrame(index=pd.MultiIndex.from_arrays([[], [], []], names=RUN))
+    table = pd.concat(rows, axis="columns", names=RUN).T
     return table.sort_index(axis="columns") if table.columns.nlevels > 1 else table

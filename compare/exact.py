@@ -79,7 +79,10 @@ def rolling_speed(start: Start, law: EngineLaw) -> float:
 def _pinch(start: Start, law: EngineLaw) -> tuple[float, float, float, float]:
     """Speed of the bar, arms at wall and bar, and the overlap, alike at both: half of what the gap lacks."""
     bar = start.case["bar"]
-    gap = bar["centre_x_m"] - bar["width_m"] / 2
+    to_wall = bar["centre_x_m"]
+    if _right_of_bar(start):
+        to_wall = start.case["container"]["width_m"] - to_wall
+    gap = to_wall - bar["width_m"] / 2
     radius = float(start.radius[0])
     overlap = (2 * radius - gap) / 2
     return (
@@ -88,6 +91,10 @@ def _pinch(start: Start, law: EngineLaw) -> tuple[float, float, float, float]:
         law.bar_arm(radius, overlap),
         overlap,
     )
+
+
+def _right_of_bar(start: Start) -> bool:
+    return float(start.position[0, 0]) > start.case["bar"]["centre_x_m"]
 
 
 def sink(start: Start, law: EngineLaw) -> float:
@@ -102,7 +109,8 @@ def pinched_rolling(start: Start, law: EngineLaw) -> float:
 
 def side_force(start: Start, law: EngineLaw) -> float:
     *_, overlap = _pinch(start, law)
-    return start.contact()["normal_stiffness_N_m"] * overlap
+    force = start.contact()["normal_stiffness_N_m"] * overlap
+    return -force if _right_of_bar(start) else force
 
 
 def bar_load(start: Start, law: EngineLaw) -> float:

@@ -12,7 +12,8 @@ from .attribution import Attribution, Station, attribute
 from .checks import Check
 from .ingredients import Ingredient, engine_itself, walk
 from .progress import ProgressDisplay
-from .variants import Variant, VariantRun, run_variants, settled
+from .runs import where
+from .variants import Variant, VariantRun, run_many_variants, settled
 
 
 def explain_case(
@@ -21,8 +22,9 @@ def explain_case(
     seeds: int,
     engine_seeds: int,
     workspace: Workspace,
-    jobs: int,
+    jobs: int | None,
     console: Console,
+    profile: str | None = None,
 ) -> Attribution:
     """Walk on the packings of `seeds` seeds, with the engine itself on the first `engine_seeds` of them.
 
@@ -39,8 +41,8 @@ def explain_case(
             for _, variant in steps
             for packing in packings[: engine_seeds if variant.engine == target else seeds]
         ]
-        display.say(f"{len(pairs)} runs, {jobs} at a time")
-        runs = run_variants(case, pairs, workspace, jobs, display)
+        display.say(f"{len(pairs)} runs, {where(jobs, profile)}")
+        runs = run_many_variants(case, pairs, workspace, jobs, display, profile)
     stations = tuple(
         station(ingredient, checks, [run for run in runs if run.variant == variant])
         for ingredient, variant in steps

@@ -22,18 +22,20 @@ COLOUR_STEPS = 8
 
 
 def resistance_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
-    """Resistance against depth: thin for each seed (means of 1 mm), thick for the mean of all seeds per cm."""
+    """Resistance against depth: thin for each packing (means of 1 mm; of recorded ones per cm), thick for their mean."""
 
     def draw(axes: Axes) -> None:
         for engine, style in engine_styles(comparison.engines).items():
-            tables = [run.resistance for run in comparison.of(engine)]
-            for table in tables:
-                fine = resistance.resistance_profile(table, FINE_BIN_M)["mean_N"]
-                axes.plot(100 * fine.index, fine, color=style.colour, linewidth=0.8, alpha=0.55)
-            if tables:
-                mean = resistance.profile_over_seeds(
-                    [resistance.resistance_profile(table) for table in tables]
-                )["mean_N"]
+            packings = comparison.packings(engine)
+            lines = [
+                resistance.resistance_profile(run.resistance, FINE_BIN_M)["mean_N"]
+                for run in comparison.of(engine)
+            ] or [profile for _, profile in packings.iterrows()]
+            faint = min(0.55, 4 / max(1, len(lines)))
+            for fine in lines:
+                axes.plot(100 * fine.index, fine, color=style.colour, linewidth=0.8, alpha=faint)
+            if len(packings):
+                mean = packings.mean()
                 _thick(axes, 100 * mean.index, mean, style)
         axes.set(xlabel="depth of the tip, cm", ylabel="resistance, N")
         axes.set_xlim(left=0)
@@ -42,7 +44,7 @@ def resistance_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
 
 
 def movement_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
-    """Mean downward displacement of the particles near the bar against depth, mean of all seeds."""
+    """Mean downward displacement of the particles near the bar against depth, mean of all packings."""
 
     def draw(axes: Axes) -> None:
         speed_m_s = comparison.case.resolved["bar"]["speed_m_s"]
@@ -61,7 +63,7 @@ def movement_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
 
 
 def surface_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
-    """Surface of the bed at the end, mean of all seeds; grey: at t = 0, mean of all runs."""
+    """Surface of the bed at the end, mean of all packings; grey: at t = 0, mean of all runs."""
 
     def draw(axes: Axes) -> None:
         before = [motion.surface_profile(run, 0) for run in comparison.datasets]
@@ -81,7 +83,7 @@ def surface_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
 
 
 def displacement_plots(comparison: Comparison, size_px: tuple[int, int]) -> dict[str, str]:
-    """Displacement field at the end for each engine with results, mean of all seeds, in one scale of colours."""
+    """Displacement field at the end for each engine with datasets, mean of all packings, in one scale of colours."""
     fields = {
         engine: motion.field_over_seeds([motion.displacement_field(run) for run in runs])
         for engine in comparison.engines

@@ -17,10 +17,9 @@ from crossdem import ExitCode
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.packing import SHIFT_M
 
-from . import checks
+from . import outcomes
+from .outcomes import FAILED
 from .wording import metres
-
-FAILED = "failed"  # an outcome beside those of checks
 
 # Of one particle of the twin: far above the rounding of a coordinate, a billionth of a radius.
 NOTICED_M = 1e-9  # drift from which on no comparison to this limit can be made
@@ -112,14 +111,14 @@ class EngineHorizon:
 
     @property
     def outcome(self) -> str | None:
-        """A word of checks, or FAILED; None: it has grown, and there is nothing for it to agree with."""
+        """A word of outcomes; None: it has grown, and there is nothing for it to agree with."""
         if self.failed:
             return FAILED
         if self.stray:
-            return checks.DIFFERS
+            return outcomes.DIFFERS
         if self.reason:
-            return checks.NOT_COMPARABLE
-        return checks.AGREES if self.closeness else None
+            return outcomes.NOT_COMPARABLE
+        return outcomes.AGREES if self.closeness else None
 
     @property
     def reason(self) -> str | None:
@@ -167,7 +166,7 @@ class Horizon:
 
     @property
     def strays(self) -> list[str]:
-        return [one.stray for one in self.engines if one.outcome == checks.DIFFERS]
+        return [one.stray for one in self.engines if one.outcome == outcomes.DIFFERS]
 
     @property
     def failures(self) -> dict[tuple[str, int], str]:
@@ -182,7 +181,7 @@ class Horizon:
         if self.failures:
             return ExitCode.ENGINE_FAILED
         compared = [one.outcome for one in self.engines if one.outcome or not one.growth]
-        agree = all(outcome == checks.AGREES for outcome in compared)
+        agree = all(outcome == outcomes.AGREES for outcome in compared)
         return ExitCode.AGREES if agree else ExitCode.INCONCLUSIVE
 
 

@@ -8,7 +8,7 @@ import pandas as pd
 
 from crossdem.adapters.packing import SHIFT_M
 
-from . import checks, wording
+from . import outcomes, wording
 from .horizon import (
     COMPARED_S,
     EARLY_SHARE,
@@ -71,7 +71,7 @@ def sentence(horizon: Horizon) -> str:
     if horizon.strays:
         return "; ".join(horizon.strays) + "."
     parts = [f"On the packing of seed {horizon.seed}, {_reach(horizon)}"]
-    compared = [one for one in horizon.engines if one.outcome == checks.AGREES]
+    compared = [one for one in horizon.engines if one.outcome == outcomes.AGREES]
     if compared:
         names = wording.listed([one.engine for one in compared])
         does = f"{names} does" if len(compared) == 1 else f"each of {names} does"
@@ -83,7 +83,7 @@ def sentence(horizon: Horizon) -> str:
     else:
         parts.append("no engine was compared")
     silent = [
-        one for one in horizon.engines if one.obstacle or one.outcome == checks.NOT_COMPARABLE
+        one for one in horizon.engines if one.obstacle or one.outcome == outcomes.NOT_COMPARABLE
     ]
     parts += [f"{one.engine}: {one.outcome}, {(one.reason or '').rstrip('.')}" for one in silent]
     return "; ".join(parts) + "."

@@ -1,24 +1,26 @@
 """The comparison as a test report, junit.xml: a test for the verdict, for each run, each gate, each pair and check.
 
-Only agreement passes; what stays open is skipped, so that no continuous integration counts it as agreement.
+Only equivalence passes; what stays open is skipped, so that no continuous integration counts it as such.
 """
 
 from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from . import checks, horizon_tables
+from . import horizon_tables, outcomes
 from .comparison import Comparison
-from .horizon import FAILED
+from .intake import run_name
 from .wording import explanation, printable
 
 # Outcome: how the test ends; None is a pass.
 ENDS = {
-    checks.AGREES: None,
-    checks.DIFFERS: "failure",
-    checks.INCONCLUSIVE: "skipped",
-    checks.NOT_COMPARABLE: "error",
-    FAILED: "error",
+    outcomes.EQUIVALENT: None,
+    outcomes.DIFFERENT: "failure",
+    outcomes.INCONCLUSIVE: "skipped",
+    outcomes.AGREES: None,
+    outcomes.DIFFERS: "failure",
+    outcomes.NOT_COMPARABLE: "error",
+    outcomes.FAILED: "error",
 }
 
 
@@ -30,7 +32,10 @@ def junit_xml(comparison: Comparison) -> bytes:
         "verdict",
         [("verdict", verdict.word, "failure" if verdict.exit_code else None, verdict.sentence)],
     )
-    finished = [(run.engine, f"seed {run.seed}", None, "") for run in comparison.datasets]
+    manifests = comparison.ensemble.manifests
+    finished = [
+        (run[0], _packing(run), None, "") for run in manifests if run not in comparison.recorded
+    ]
     failed = [
         (engine, f"seed {seed}", "error", message)
         for (engine, seed), message in comparison.failures.items()
@@ -41,13 +46,13 @@ def junit_xml(comparison: Comparison) -> bytes:
         "gates",
         [
             (
-                run.engine,
-                f"seed {run.seed}: {gate['name']}",
+                run[0],
+                f"{_packing(run)}: {gate['name']}",
                 None if gate["passed"] else "failure",
                 gate["message"],
             )
-            for run in comparison.datasets
-            for gate in run.manifest["gates"]
+            for run, manifest in manifests.items()
+            for gate in manifest["gates"]
         ],
     )
     suite(
@@ -75,6 +80,11 @@ def junit_xml(comparison: Comparison) -> bytes:
             ],
         )
     return to_bytes(root)
+
+
+def _packing(run: tuple[str, int, int]) -> str:
+    """ "seed 3, twin 1"."""
+    return run_name(run).removeprefix(f"{run[0]}, ")
 
 
 def to_bytes(root: ElementTree.Element) -> bytes:

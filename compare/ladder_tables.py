@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .ladder import Ladder
+from .outcomes import AGREES, DIFFERS, NO_RESULT, NOT_COMPARABLE
 from .rungs import AnswerRung, Rung, TwinRung
 from .wording import MINUS, number
 
@@ -150,11 +151,11 @@ def _concern(rung: Rung) -> tuple[bool, bool, float]:
     """To sort by: what fails last, before it what is refined, then by the share of the tolerance."""
     if not isinstance(rung, AnswerRung):
         return True, False, 0.0
-    return rung.outcome != "agrees", not rung.answer.every_step, rung.share
+    return rung.outcome != AGREES, not rung.answer.every_step, rung.share
 
 
 def _worst(outcomes: list[str]) -> str:
-    for outcome in ("differs", "no result", "not comparable"):
+    for outcome in (DIFFERS, NO_RESULT, NOT_COMPARABLE):
         if outcome in outcomes:
             return outcome
-    return "agrees" if outcomes else "nothing asked"
+    return AGREES if outcomes else "nothing asked"

@@ -14,16 +14,17 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
+from ..adapters.dataset_faults import RESISTANCE_COLUMNS
 from ..adapters.motion_file import Motion
 from ..adapters.packing import Packing
 from ..adapters.schedule import Schedule
 
+TABLE = [column for column in RESISTANCE_COLUMNS if column != "depth_m"]
+
 
 def paper_reference(case: dict, packing: Packing) -> tuple[Motion, pd.DataFrame]:
-    """The motion at the frames of the resolved `case`, and the forces at its samples as of the step that ends there.
-
-    The table has time_s, force_x_N and force_y_N (on the bar, > 0 is up) and floor_force_y_N (on the floor, < 0 is
-    down). The time step is the case's own.
+    """The motion at the frames of the resolved `case`, and the dataset's table at its samples but for the depth: forces
+    as of the step that ends there, contacts and kinetic energy after it. The time step is the case's own.
     """
     assert case["scheme"]["name"] == "paper"
     schedule = Schedule.of(case, case["time"]["step_s"])
@@ -39,11 +40,10 @@ def paper_reference(case: dict, packing: Packing) -> tuple[Motion, pd.DataFrame]
         if step % schedule.frame == 0:
             frames.append((len(frames) * frame_s, *bed.frame()))
         if step % schedule.sample == 0:
-            samples.append((len(samples) * sample_s, *bed.bar_force, bed.floor_force))
+            samples.append((len(samples) * sample_s, *bed.sample()))
     time_s, position, velocity, spin, angle, tip = map(np.array, zip(*frames))
     motion = Motion(time_s, position, velocity, spin, angle, None if bed.bar is None else tip)
-    columns = ["time_s", "force_x_N", "force_y_N", "floor_force_y_N"]
-    return motion, pd.DataFrame(samples, columns=columns)
+    return motion, pd.DataFrame(samples, columns=TABLE)
 
 
 class _Touch(NamedTuple):
@@ -98,6 +98,18 @@ class _Bed:
         position, velocity = [p[:2] for p in self.position], [v[:2] for v in self.velocity]
         spin, angle = [v[2] for v in self.velocity], [p[2] for p in self.position]
         return position, velocity, spin, angle, self.tip
+
+    def sample(self) -> tuple:
+        """All that TABLE has but the time."""
+        energy = sum(
+            0.5 * (m * (vx * vx + vy * vy) + inertia * spin * spin)
+            for m, inertia, (vx, vy, spin) in zip(self.mass, self.inertia, self.velocity)
+        )
+        contacts = sum(
+            1 for i in self.particles for _ in self.neighbours(i, self.particles[i + 1 :])
+        )
+        tip, shaft = self.tip_force, self.bar_force[1] - self.tip_force
+        return (*self.bar_force, tip, shaft, self.floor_force, contacts, energy)
 
     def step(self) -> None:
         """The bar moves, then forces act and particles move."""
@@ -169,7 +181,7 @@ class _Bed:
 
     def clear_loads(self) -> None:
         self.load = [[0.0, 0.0, 0.0] for _ in self.particles]  # X, Y, M
-        self.bar_force, self.floor_force = (0.0, 0.0), 0.0
+        self.bar_force, self.tip_force, self.floor_force = (0.0, 0.0), 0.0, 0.0
 
     def receive(self, i: int, touch: _Touch, f_n: float, f_s: float) -> None:
         """Eqs 10-12."""
@@ -181,6 +193,8 @@ class _Bed:
         load[2] -= self.arm(i, touch) * f_s
         if touch.partner == "bar":
             self.bar_force = (self.bar_force[0] - x, self.bar_force[1] - y)
+            if self.position[i][1] < self.tip:
+                self.tip_force -= y
         elif touch.partner == "floor":
             self.floor_force -= y
 

@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 from importlib import metadata
 
-from . import horizon_tables
+from . import chaos, horizon_tables, opinion_tables
 from .comparison import Comparison
 from .quantities import QUANTITIES
 from .wording import explanation
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 LIBRARIES = ("numpy", "pandas", "scipy", "statsmodels")  # that the numbers come from
 # Of a run's manifest; the rest stays with the run.
 PROVENANCE = (
     "engine",
     "seed",
+    "twin",
     "engine_version",
     "compiler",
     "time_step_s",
@@ -48,6 +49,15 @@ def record(comparison: Comparison) -> dict:
             "engines": comparison.engines,
             "seeds": comparison.seeds,
             "checks": [_check(result) for result in comparison.results],
+            "scatter": {
+                name: {
+                    engine: scatter and vars(scatter) | {"share_of_beds": scatter.share_of_beds}
+                    for engine, scatter in chaos.scatters(
+                        comparison.ensemble.endpoints, name
+                    ).items()
+                }
+                for name in comparison.ensemble.endpoints
+            },
             "quantities": {
                 name: {
                     "title": quantity.title,
@@ -57,14 +67,18 @@ def record(comparison: Comparison) -> dict:
                 for name, quantity in QUANTITIES.items()
             },
             "runs": [
-                {key: run.manifest[key] for key in PROVENANCE}
-                | {"values": comparison.endpoints.loc[(run.engine, run.seed)].to_dict()}
-                for run in comparison.datasets
+                {key: manifest.get(key) for key in PROVENANCE}
+                | {
+                    "recorded": run in comparison.recorded,
+                    "values": comparison.ensemble.endpoints.loc[run].to_dict(),
+                }
+                for run, manifest in comparison.ensemble.manifests.items()
             ],
             "failures": [
                 {"engine": engine, "seed": seed, "message": message}
                 for (engine, seed), message in comparison.failures.items()
             ],
+            **opinion_tables.record(comparison.opinions),
             "horizon": horizon_tables.record(comparison.horizon) if comparison.horizon else None,
             "libraries": libraries(),
         }
@@ -90,9 +104,13 @@ def _check(result) -> dict:
         "means": result.means,
         "difference": result.difference,
         "interval_90": result.interval,
+        "p_equivalent": result.p_equivalent,
+        "p_different": result.p_different,
+        "family": result.family,
         "scatter": result.scatter,
         "alarm": result.alarm,
         "seeds_needed": result.seeds_needed,
+        "seeds_to_settle": result.seeds_to_settle,
     }
 
 

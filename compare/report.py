@@ -7,12 +7,25 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from . import beds, figures, horizon_report, horizon_tables, tables
+from . import (
+    beds,
+    chaos_tables,
+    figures,
+    horizon_report,
+    horizon_tables,
+    opinion_figures,
+    opinion_tables,
+    run_tables,
+    tables,
+    wording,
+)
+from .checks import SEEDS_FOR_INTERVAL
 from .colours import engine_styles
 from .comparison import Comparison
 from .junit import junit_xml
 from .pages import render, write_whole
 from .record import libraries, record
+from .recorded import DATE
 
 WIDE_PX, NARROW_PX, PANEL_PX = (900, 400), (380, 320), (440, 320)
 FIELD_PX = (400, 460)
@@ -45,17 +58,20 @@ def _values(comparison: Comparison) -> dict:
         "profile_rows": tables.profile_rows(comparison),
         "quantity_rows": tables.quantity_rows(comparison),
         "check_blocks": tables.check_blocks(comparison),
-        "gate_names": list(
-            dict.fromkeys(
-                gate["name"] for run in comparison.datasets for gate in run.manifest["gates"]
-            )
-        ),
+        "outcome_rows": tables.outcome_rows(comparison),
+        "pair_matrix": tables.pair_matrix(comparison),
+        "scatter_engines": chaos_tables.engines_with_twins(comparison),
+        "scatter_rows": chaos_tables.scatter_rows(comparison),
+        "gate_rows": run_tables.gate_rows(comparison),
+        "run_rows": run_tables.run_rows(comparison),
+        "fewest": SEEDS_FOR_INTERVAL,
         "limitations": {
-            engine: comparison.of(engine)[0].manifest["limitations"]
+            engine: next(iter(manifests.values()))["limitations"]
             for engine in comparison.engines
-            if comparison.of(engine)
+            if (manifests := comparison.manifests(engine))
         },
         "horizon": horizon_tables.values(comparison.horizon) if comparison.horizon else None,
+        "opinions": opinion_tables.values(comparison.opinions),
         "libraries": libraries(),
     }
 
@@ -97,17 +113,24 @@ def _pictures(comparison: Comparison) -> dict:
             for engine, run in runs.items()
         },
         "horizon": horizon_report.page_values(comparison.horizon) if comparison.horizon else None,
+        "opinions": opinion_tables.values(comparison.opinions)
+        | opinion_figures.pictures(comparison.opinions, comparison.case.resolved),
     }
 
 
 def _versions(comparison: Comparison) -> dict[str, str]:
     """What each engine says of itself; of several versions, all."""
     return {
-        engine: ", ".join(dict.fromkeys(run.manifest["engine_version"] for run in runs))
-        or "no result"
-        for engine in comparison.engines
-        for runs in [comparison.of(engine)]
+        engine: _version(comparison, comparison.manifests(engine)) for engine in comparison.engines
     }
+
+
+def _version(comparison: Comparison, manifests: dict) -> str:
+    versions = ", ".join(dict.fromkeys(one["engine_version"] for one in manifests.values()))
+    if manifests and manifests.keys() <= comparison.recorded:
+        days = sorted({one.get(DATE, "").split("T")[0] for one in manifests.values()} - {""})
+        return f"{' '.join(['recorded', *days])}: {versions}"
+    return versions or "no result"
 
 
 def _shared_seed(comparison: Comparison) -> int | None:

@@ -17,21 +17,19 @@ from crossdem.adapters.dataset import Dataset, Motion
 
 from .answers import ANSWERS, Answer
 from .engine_laws import engine_law
+from .outcomes import AGREES, DIFFERS, NO_RESULT, NOT_COMPARABLE
 from .refinement import extrapolated, observed_order
 from .start import Start
 from .wording import MINUS, number
 
-AGREES = "agrees"
-DIFFERS = "differs"
-NO_RESULT = "no result"
-NOT_COMPARABLE = "not comparable"
-
 TWIN, CLOSED_FORM = "twin", "closed form"
 # Of the native solver against the paper's scheme written a second time, which sums in another order.
 REFERENCE_LIMIT_M = 1e-11
-REFERENCE_LIMIT_N = 1e-8  # on bar and floor
+REFERENCE_LIMIT_N = 1e-8  # on bar, its tip and shaft, and floor
+REFERENCE_LIMIT_J = 1e-11  # of kinetic energy
 OTHER_ORDER = "the transcription adds up contacts in an order of its own"
 SAME_BITS = "the native scheme of the engine's name does the same operations in the same order"
+FORCES = ("force_x_N", "force_y_N", "tip_force_y_N", "shaft_force_y_N", "floor_force_y_N")
 TIME_SLACK_S = 1e-9
 LARGEST_PLAIN = 1e6  # values up to here are written without exponent
 ORDER_SHARE = 1e-5  # of the tolerance: smaller differences say nothing of an order
@@ -101,22 +99,27 @@ def twin_rung(
     about: str,
     run: Dataset,
     twin: Motion,
-    twin_forces: pd.DataFrame | None = None,
+    twin_table: pd.DataFrame | None = None,
 ) -> TwinRung:
-    """`run` of `engine` against its `twin`, frame by frame; `twin_forces` on bar and floor where they are compared too."""
+    """`run` of `engine` against its `twin`, frame by frame; `twin_table`, of what was recorded beside the motion, where
+    that is compared too.
+    """
     entry = next((table for table in case["twin"] if table["engine"] == engine), {})
-    limit_m = entry.get("limit_m", REFERENCE_LIMIT_M if twin_forces is not None else 0.0)
+    limit_m = entry.get("limit_m", REFERENCE_LIMIT_M if twin_table is not None else 0.0)
     until_s = entry.get("until_s", case["time"]["penetration_s"])
     compared = run.motion.time_s <= until_s + TIME_SLACK_S
     way_m = run.motion.position_m[compared] - twin.position_m[compared]
     distances_m = np.hypot(way_m[..., 0], way_m[..., 1]).max(axis=1)
     worst = int(np.argmax(distances_m))
-    difference_N = None
-    if twin_forces is not None:
+    difference_N, miscounted = None, ""
+    if twin_table is not None:
         rows = run.resistance["time_s"] <= until_s + TIME_SLACK_S
-        difference_N = _force_difference(run.resistance[rows], twin_forces[rows.to_numpy()])
+        tables = run.resistance[rows], twin_table[rows.to_numpy()]
+        difference_N = max(_difference(column, *tables) for column in FORCES)
+        miscounted = _miscounted(*tables)
     difference_m = float(distances_m[worst])
     agrees = difference_m <= limit_m and (difference_N or 0.0) <= REFERENCE_LIMIT_N
+    agrees = agrees and not miscounted
     force = "" if difference_N is None else f" and {difference_N:.1e} N"
     when = f" (at {run.motion.time_s[worst]:.4g} s)" if difference_m > 0 else ""
     return TwinRung(
@@ -125,12 +128,12 @@ def twin_rung(
         kind=TWIN,
         about=about,
         outcome=AGREES if agrees else DIFFERS,
-        sentence=f"apart by {difference_m:.2e} m{force} at most{when}, allowed {limit_m:.1e} m",
+        sentence=f"apart by {difference_m:.2e} m{force} at most{when}, allowed {limit_m:.1e} m{miscounted}",
         difference_m=difference_m,
         time_s=float(run.motion.time_s[worst]),
         limit_m=limit_m,
         until_s=until_s,
-        reason=entry.get("reason", SAME_BITS if twin_forces is None else OTHER_ORDER),
+        reason=entry.get("reason", SAME_BITS if twin_table is None else OTHER_ORDER),
         difference_N=difference_N,
     )
 
@@ -214,6 +217,15 @@ def _digits(value: float, rung: AnswerRung) -> str:
     return f"{value:.{decimals}f}".replace("-", MINUS)
 
 
-def _force_difference(found: pd.DataFrame, twin: pd.DataFrame) -> float:
-    columns = ["force_x_N", "force_y_N", "floor_force_y_N"]
-    return float(np.abs(found[columns].to_numpy() - twin[columns].to_numpy()).max())
+def _miscounted(found: pd.DataFrame, twin: pd.DataFrame) -> str:
+    """What else of the two tables differs, as the end of a sentence."""
+    contacts = _difference("contacts", found, twin)
+    energy_J = _difference("kinetic_energy_J", found, twin)
+    said = f"; {contacts:.0f} contacts more or fewer" if contacts else ""
+    too_far = energy_J > REFERENCE_LIMIT_J
+    return said + (f"; kinetic energy apart by {energy_J:.1e} J" if too_far else "")
+
+
+def _difference(column: str, found: pd.DataFrame, twin: pd.DataFrame) -> float:
+    """The largest."""
+    return float(np.abs(found[column].to_numpy() - twin[column].to_numpy()).max())

@@ -1,5 +1,6 @@
-"""From a case to runs: packings, then every engine on each of them, with progress."""
+"""From a case to runs: packings and their twins, then every engine on each of them, with progress."""
 
+import os
 import shutil
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -9,13 +10,20 @@ from rich.console import Console
 
 from crossdem.adapters.case import Case
 from crossdem.adapters.engines import get_engine
-from crossdem.adapters.packing import Packing, make_packing
-from crossdem.adapters.run import RunRequest, run_all
-from crossdem.adapters.run_folder import prepare
+from crossdem.adapters.gates import REFERENCE
+from crossdem.adapters.mpi import ranks_of
+from crossdem.adapters.packing import Packing, make_packing, make_twin
+from crossdem.adapters.run import RunResult
+from crossdem.adapters.run_folder import RunRequest, prepare
 from crossdem.adapters.solver import SolverError
+from crossdem.adapters.workflow.ensemble import run_ensemble
 from crossdem.adapters.workspace import Workspace
 
 from .progress import ProgressDisplay
+
+# How large an ensemble is: packings, and perturbed twins of each beside the packing itself.
+TIERS = {"smoke": (4, 0), "nightly": (16, 2), "release": (32, 2)}
+WITHOUT_TIER = (2, 0)
 
 
 @dataclass(frozen=True)
@@ -30,32 +38,53 @@ class Runs:
 
 
 def run_engines(
-    case: Case, engines: list[str], seeds: int, workspace: Workspace, jobs: int, console: Console
+    case: Case,
+    engines: list[str],
+    seeds: int,
+    workspace: Workspace,
+    jobs: int | None,
+    console: Console,
+    twins: int = 0,
+    profile: str | None = None,
+    ranks: int = 1,
 ) -> Runs:
+    """Every engine on every packing and on `twins` twins of each; the folders of native runs come first.
+
+    `jobs`, `profile`: as in run_ensemble. `ranks`: MPI processes per run, of the engines that can.
+    """
     with ProgressDisplay(console) as display:
         packings, unsettled = settle(case, seeds, workspace, jobs, display)
-        requests = [RunRequest(case, packing, engine) for packing in packings for engine in engines]
-        display.say(f"{len(requests)} runs, {jobs} at a time")
-        results = run_all(
-            requests,
-            workspace.root,
+        started_from = [
+            make_twin(packing, number, workspace.twin_folder(packing, number))
+            for packing in packings
+            for number in range(twins + 1)
+        ]
+        requests = [
+            RunRequest(case, packing, engine, ranks_of(engine, ranks))
+            for engine in sorted(engines, key=lambda engine: engine != REFERENCE)
+            for packing in started_from
+        ]
+        display.say(f"{len(requests)} runs, {where(jobs, profile)}")
+        results = run_ensemble(
+            [(request, workspace.root) for request in requests],
+            workspace.root / "workflow",
             jobs,
-            lambda request, *progress: display.update(_job(request), *progress),
+            display.count,
+            profile,
         )
         if reused := sum(result.status == "reused" for result in results):
             display.say(f"{reused} of these were there already")
     failures = {(engine, seed): why for engine in engines for seed, why in unsettled.items()}
-    by_run = {
-        (result.request.engine_name, result.request.packing.seed): result for result in results
-    }
-    failures |= {run: result.failure for run, result in by_run.items() if result.failure}
-    unsupported = frozenset(run for run, result in by_run.items() if result.status == "unsupported")
+    for result in results:
+        if result.failure:
+            failures.setdefault(_run(result), _reason(result))
+    unsupported = frozenset(_run(result) for result in results if result.status == "unsupported")
     folders = (result.dataset_folder for result in results)
     return Runs(tuple(folder for folder in folders if folder), failures, unsupported)
 
 
 def settle(
-    case: Case, seeds: int, workspace: Workspace, jobs: int, display: ProgressDisplay
+    case: Case, seeds: int, workspace: Workspace, jobs: int | None, display: ProgressDisplay
 ) -> tuple[list[Packing], dict[int, str]]:
     """The packings of seeds 1, 2, ..., and by seed why one could not be made. Raises CaseError.
 
@@ -70,7 +99,9 @@ def settle(
 
     numbers = range(1, 2 if case.resolved["particle"] else seeds + 1)
     packings, unsettled = [], {}
-    with ThreadPoolExecutor(jobs) as pool:  # leaving the loop early cancels what has not begun
+    with ThreadPoolExecutor(
+        jobs or cores()
+    ) as pool:  # leaving the loop early cancels what has not begun
         for seed, made in zip(numbers, pool.map(make, numbers)):
             if isinstance(made, Packing):
                 packings.append(made)
@@ -104,5 +135,20 @@ def write_inputs(
     return Runs(tuple(folders), failures)
 
 
-def _job(request: RunRequest) -> str:
-    return f"{request.engine_name}, seed {request.packing.seed}"
+def cores() -> int:
+    """How many processes run at a time here, unless it is said otherwise."""
+    return len(os.sched_getaffinity(0))
+
+
+def where(jobs: int | None, profile: str | None) -> str:
+    """For people."""
+    return f"with the profile {profile}" if profile else f"{jobs} at a time"
+
+
+def _run(result: RunResult) -> tuple[str, int]:
+    return result.request.engine_name, result.request.packing.seed
+
+
+def _reason(result: RunResult) -> str:
+    twin = result.request.packing.twin
+    return f"twin {twin}: {result.failure}" if twin else result.failure

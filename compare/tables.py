@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import NamedTuple
 
 import pandas as pd
 
 from . import resistance, wording
-from .checks import Check
+from .checks import DIFFERENT, EQUIVALENT, INCONCLUSIVE, NOT_COMPARABLE, Check, CheckResult
 from .comparison import Comparison
+from .ensemble import PACKING
 from .quantities import QUANTITIES
 from .verdict import seeds_text
 
 DASH = "\N{EN DASH}"
+WORST_FIRST = (DIFFERENT, NOT_COMPARABLE, INCONCLUSIVE, EQUIVALENT)
 
 
 class Headline(NamedTuple):
@@ -31,7 +34,9 @@ class CheckRow(NamedTuple):
     values: str
     difference: str
     interval: str
+    p: str  # after Holm
     outcome: str
+    packings: str  # that both have, of those that a statement of equivalence needs
     explanation: str
 
 
@@ -42,13 +47,12 @@ class CheckBlock(NamedTuple):
     definition: str
     margin: str
     alarm: str
-    seeds_needed: str
     reason: str
     rows: list[CheckRow]
 
 
 def headlines(comparison: Comparison) -> list[Headline]:
-    """Mean resistance, its largest difference between two engines, and the seeds behind the verdict."""
+    """Mean resistance, its largest difference between two engines, and the packings behind the verdict."""
     quantity = QUANTITIES["mean_resistance_N"]
     means = _means(comparison)[quantity.name]
     by_engine = ", ".join(
@@ -67,7 +71,10 @@ def headlines(comparison: Comparison) -> list[Headline]:
         Headline(span, window, by_engine or "no run finished"),
         _largest_difference(comparison),
         Headline(
-            wording.plural(verdict.seeds if comparison.results else len(comparison.seeds), "seed"),
+            wording.packings(
+                verdict.seeds if comparison.results else len(comparison.seeds),
+                runs_each(comparison),
+            ),
             "behind this verdict",
             f"a statement of equivalence needs {needed}" if comparison.results else needed,
         ),
@@ -89,59 +96,86 @@ def _largest_difference(comparison: Comparison) -> Headline:
     return Headline(shown, label, f"{first} against {second}; margin {wording.margin(worst.check)}")
 
 
+def runs_each(comparison: Comparison) -> list[int]:
+    """How many runs each packing of each engine has: the packing as it was settled, and its twins."""
+    return comparison.ensemble.endpoints.groupby(level=PACKING).size().tolist()
+
+
 def check_blocks(comparison: Comparison) -> list[CheckBlock]:
-    blocks: dict[Check, CheckBlock] = {}
+    return [
+        CheckBlock(
+            title=check.quantity.title,
+            definition=check.quantity.definition,
+            margin=wording.margin(check),
+            alarm=wording.band(check, max(result.alarm for result in results)),
+            reason=check.reason,
+            rows=[_check_row(result) for result in results],
+        )
+        for check, results in _by_check(comparison).items()
+    ]
+
+
+def outcome_rows(comparison: Comparison) -> list[tuple[str, list[CheckResult]]]:
+    """A row for each check: its title, and what it says of each pair, in the order of `comparison.pairs`."""
+    return [(check.quantity.title, results) for check, results in _by_check(comparison).items()]
+
+
+def pair_matrix(comparison: Comparison) -> list[tuple[str, list[list[tuple[str, str]] | None]]]:
+    """Engine by engine: for each pair how many checks had which outcome, as (outcome, "11 of 13"); None: no such pair."""
+    tallies = {
+        pair: Counter(result.outcome for result in comparison.results if result.pair == pair)
+        for pair in comparison.pairs
+    }
+
+    def cell(row: str, column: str) -> list[tuple[str, str]] | None:
+        tally = tallies.get((row, column))
+        if tally is None:
+            return None
+        worst_first = sorted(tally, key=WORST_FIRST.index)
+        return [(outcome, f"{tally[outcome]} of {tally.total()}") for outcome in worst_first]
+
+    engines = comparison.engines
+    return [(row, [cell(row, column) for column in engines[:-1]]) for row in engines[1:]]
+
+
+def _by_check(comparison: Comparison) -> dict[Check, list[CheckResult]]:
+    found: dict[Check, list[CheckResult]] = {}
     for result in comparison.results:
-        check = result.check
-        block = blocks.setdefault(
-            check,
-            CheckBlock(
-                title=check.quantity.title,
-                definition=check.quantity.definition,
-                margin=wording.margin(check),
-                alarm=wording.band(check, result.alarm),
-                seeds_needed=wording.needed(result),
-                reason=check.reason,
-                rows=[],
-            ),
-        )
-        values = " / ".join(wording.quantity_value(check.quantity, mean) for mean in result.means)
-        block.rows.append(
-            CheckRow(
-                pair=" against ".join(result.pair),
-                values=values,
-                difference=wording.signed_difference(check, result.difference),
-                interval=wording.interval(result),
-                outcome=result.outcome,
-                explanation=wording.explanation(result),
-            )
-        )
-    return list(blocks.values())
+        found.setdefault(result.check, []).append(result)
+    return found
+
+
+def _check_row(result: CheckResult) -> CheckRow:
+    quantity = result.check.quantity
+    return CheckRow(
+        pair=" against ".join(result.pair),
+        values=" / ".join(wording.quantity_value(quantity, mean) for mean in result.means),
+        difference=wording.signed_difference(result.check, result.difference),
+        interval=wording.interval(result),
+        p=wording.claim(result),
+        outcome=result.outcome,
+        packings=f"{len(result.seeds)} / {wording.needed(result.seeds_needed)}",
+        explanation=wording.explanation(result),
+    )
 
 
 def profile_rows(comparison: Comparison) -> list[list[str]]:
-    """Per cm of depth: the depths, then mean ± scatter from seed to seed [N] of each engine."""
-    profiles = {
-        engine: resistance.profile_over_seeds(
-            [resistance.resistance_profile(run.resistance) for run in comparison.of(engine)]
-        )
-        for engine in comparison.engines
-        if comparison.of(engine)
-    }
-    if not profiles:
-        return []
+    """Per cm of depth: the depths, then mean ± scatter from packing to packing [N] of each engine."""
+    packings = {engine: comparison.packings(engine) for engine in comparison.engines}
     return [
         [f"{100 * depth_m - 0.5:.0f}{DASH}{100 * depth_m + 0.5:.0f}"]
         + [
-            wording.with_scatter(*profiles[engine].loc[depth_m]) if engine in profiles else DASH
-            for engine in comparison.engines
+            wording.with_scatter(table[depth_m].mean(), table[depth_m].std(ddof=1))
+            if len(table)
+            else DASH
+            for table in packings.values()
         ]
-        for depth_m in next(iter(profiles.values())).index
+        for depth_m in comparison.ensemble.profiles.columns
     ]
 
 
 def quantity_rows(comparison: Comparison) -> list[tuple[str, str, list[str]]]:
-    """Each quantity: title, definition, mean ± scatter from seed to seed for each engine."""
+    """Each quantity: title, definition, mean ± scatter from packing to packing for each engine."""
     means, scatters = _means(comparison), comparison.endpoints.groupby("engine").std(ddof=1)
     return [
         (

@@ -10,8 +10,9 @@ from pathlib import Path
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.packing import Packing
-from crossdem.adapters.run import RunRequest, run_all
+from crossdem.adapters.run import RunRequest, RunResult, run_all
 from crossdem.adapters.solver import SolverError
+from crossdem.adapters.workflow.ensemble import run_ensemble
 from crossdem.adapters.workspace import Workspace
 
 from .progress import ProgressDisplay
@@ -58,24 +59,61 @@ def run_variants(
 
     Runs of `case` itself lie in runs/, as those of `crossdem check`; those of other cases apart, in variants/runs/.
     """
+    requests, names = _requests(pairs)
+    results = {}
+    for folder in (workspace.root / "variants", workspace.root):
+        some = {
+            key: entry for key, entry in requests.items() if _place(key, case, workspace) == folder
+        }
+        ran = run_all(
+            list(some.values()),
+            folder,
+            jobs,
+            lambda request, *progress: display.update(names[id(request)], *progress),
+        )
+        results |= dict(zip(some, ran))
+    return _told(pairs, results, display)
+
+
+def run_many_variants(
+    case: Case,
+    pairs: Sequence[tuple[Variant, Packing]],
+    workspace: Workspace,
+    jobs: int | None,
+    display: ProgressDisplay,
+    profile: str | None = None,
+) -> list[VariantRun]:
+    """As run_variants, through the workflow: for more runs than one sits and waits for."""
+    requests, _ = _requests(pairs)
+    placed = [(entry, _place(key, case, workspace)) for key, entry in requests.items()]
+    ran = run_ensemble(placed, workspace.root / "workflow", jobs, display.count, profile)
+    return _told(pairs, dict(zip(requests, ran)), display)
+
+
+def _requests(
+    pairs: Sequence[tuple[Variant, Packing]],
+) -> tuple[dict[tuple[str, str, str], RunRequest], dict[int, str]]:
+    """What is to be run, once each, and the name of each request for people, by its id()."""
     requests: dict[tuple[str, str, str], RunRequest] = {}
     names: dict[int, str] = {}
     for variant, packing in pairs:
         request = RunRequest(variant.case, packing, variant.engine)
         kept = requests.setdefault(_identity(variant, packing), request)
         names.setdefault(id(kept), f"{variant.name}, seed {packing.seed}")
-    found = {}
-    for folder, wanted in ((workspace.root / "variants", False), (workspace.root, True)):
-        some = {key: entry for key, entry in requests.items() if (key[0] == case.hash) == wanted}
-        results = run_all(
-            list(some.values()),
-            folder,
-            jobs,
-            lambda request, *progress: display.update(names[id(request)], *progress),
-        )
-        found |= dict(zip(some, results))
-    if reused := sum(result.status == "reused" for result in found.values()):
-        display.say(f"{reused} of {len(found)} runs were there already")
+    return requests, names
+
+
+def _place(identity: tuple[str, str, str], case: Case, workspace: Workspace) -> Path:
+    return workspace.root if identity[0] == case.hash else workspace.root / "variants"
+
+
+def _told(
+    pairs: Sequence[tuple[Variant, Packing]],
+    results: dict[tuple[str, str, str], RunResult],
+    display: ProgressDisplay,
+) -> list[VariantRun]:
+    if reused := sum(result.status == "reused" for result in results.values()):
+        display.say(f"{reused} of {len(results)} runs were there already")
     return [
         VariantRun(
             variant,
@@ -86,12 +124,12 @@ def run_variants(
             result.exit_status,
         )
         for variant, packing in pairs
-        for result in [found[_identity(variant, packing)]]
+        for result in [results[_identity(variant, packing)]]
     ]
 
 
 def settled(
-    case: Case, seeds: int, workspace: Workspace, jobs: int, display: ProgressDisplay
+    case: Case, seeds: int, workspace: Workspace, jobs: int | None, display: ProgressDisplay
 ) -> list[Packing]:
     """The packings of seeds 1, 2, ... Raises CaseError, and SolverError where one could not be made."""
     packings, unsettled = settle(case, seeds, workspace, jobs, display)

@@ -9,7 +9,7 @@ from crossdem import ExitCode
 
 from . import checks
 from .checks import MOST_SEEDS, CheckResult
-from .wording import explanation, listed, plural, signed_difference
+from .wording import explanation, listed, packings, plural, signed_difference
 
 AGREES = "AGREES"
 CONSISTENT = "CONSISTENT"
@@ -33,7 +33,7 @@ class Verdict:
     word: str  # a key of EXIT_CODES
     sentence: str
     next_step: str  # what to do now
-    seeds: int  # pairs of runs behind every check: the fewest of any pair of engines
+    seeds: int  # packings behind every check: the fewest of any pair of engines
     seeds_needed: int | None  # for a statement of equivalence in every check; None: more than MOST_SEEDS, or no checks
 
     @property
@@ -47,23 +47,24 @@ def decide(
     failures: dict[tuple[str, int], str],
     failed_gates: Sequence[str] = (),
     strays: Sequence[str] = (),
+    runs_each: Sequence[int] = (1,),
 ) -> Verdict:
     """The verdict: a difference weighs more than an engine without result, and that more than an open question.
 
     `failed_gates` are lines that name the run and the gate; `strays` name the engines that differ particle by particle
-    before the horizon, and when: that is no chance, and comes first.
+    before the horizon, and when: that is no chance, and comes first. `runs_each` says how many runs the packings have.
 
-    The smoke tier is a comparison of fewer seeds than a statement of equivalence needs: there, nothing outside the
-    alarm band is as much as can be said, and it is called CONSISTENT, never AGREES.
+    AGREES is the claim that every check is EQUIVALENT. With fewer packings than that takes, nothing outside the alarm
+    band is as much as can be said, and it is called CONSISTENT.
     """
     outcomes = [result.outcome for result in results]
     seeds = min((len(result.seeds) for result in results), default=0)
     needed = _most([result.seeds_needed for result in results])
-    smoke = bool(results) and (needed is None or seeds < needed)
+    behind = packings(seeds, runs_each)
 
     if strays:
         word, sentence, next_step = DIFFERS, *_strayed(strays)
-    elif checks.DIFFERS in outcomes:
+    elif checks.DIFFERENT in outcomes:
         word, sentence, next_step = DIFFERS, *_differs(results)
     elif failures:
         word, sentence, next_step = ENGINE_FAILED, *_failed(failures)
@@ -73,17 +74,19 @@ def decide(
         word, sentence, next_step = INCONCLUSIVE, *_nothing_to_compare(engines)
     elif checks.NOT_COMPARABLE in outcomes:
         word, sentence, next_step = INCONCLUSIVE, *_not_comparable(_first_obstacle(results))
-    elif smoke:
-        word, sentence, next_step = CONSISTENT, *_consistent(engines, results, seeds, needed)
-    elif all(outcome == checks.AGREES for outcome in outcomes):
-        word, sentence, next_step = AGREES, *_agrees(engines, results, seeds)
+    elif all(outcome == checks.EQUIVALENT for outcome in outcomes):
+        word, sentence, next_step = AGREES, *_agrees(engines, results, behind)
+    elif needed is None or seeds < needed:
+        word, sentence, next_step = CONSISTENT, *_consistent(engines, results, behind, needed)
     else:
-        word, sentence, next_step = INCONCLUSIVE, *_unsettled(results, seeds)
+        word, sentence, next_step = INCONCLUSIVE, *_unsettled(results, behind)
     return Verdict(word, sentence, next_step, seeds, needed)
 
 
 def seeds_text(seeds_needed: int | None) -> str:
-    return f"more than {MOST_SEEDS} seeds" if seeds_needed is None else plural(seeds_needed, "seed")
+    if seeds_needed is None:
+        return f"more than {MOST_SEEDS} packings"
+    return plural(seeds_needed, "packing")
 
 
 def _most(needed: list[int | None]) -> int | None:
@@ -98,7 +101,7 @@ def _strayed(strays: Sequence[str]) -> tuple[str, str]:
 
 
 def _differs(results) -> tuple[str, str]:
-    found = [result for result in results if result.outcome == checks.DIFFERS]
+    found = [result for result in results if result.outcome == checks.DIFFERENT]
     worst = max(found, key=lambda result: abs(result.difference) / result.alarm)
     a, b = worst.pair
     sentence = (
@@ -146,37 +149,41 @@ def _not_comparable(obstacle: str) -> tuple[str, str]:
     )
 
 
-def _agrees(engines, results, seeds) -> tuple[str, str]:
+def _agrees(engines, results, behind) -> tuple[str, str]:
     checked = len({result.check.quantity.name for result in results})
-    sentence = (
-        f"{listed(engines)} agree: the 90 % interval of every difference in {plural(checked, 'quantity', 'quantities')} "
-        f"lies within its margin, from {plural(seeds, 'seed')}."
+    return (
+        f"{listed(engines)} are EQUIVALENT in {_all(checked)}, from {behind}: the 90 % interval of every "
+        f"difference lies within its margin.",
+        "Vary the case (--set key=value) to see how far the agreement reaches.",
     )
-    return sentence, "Vary the case (--set key=value) to see how far the agreement reaches."
 
 
-def _consistent(engines, results, seeds, needed) -> tuple[str, str]:
-    still_open = sum(result.outcome == checks.INCONCLUSIVE for result in results)
+def _all(checked: int) -> str:
+    return "the one quantity checked" if checked == 1 else f"all {checked} quantities"
+
+
+def _consistent(engines, results, behind, needed) -> tuple[str, str]:
+    shown = sum(result.outcome == checks.EQUIVALENT for result in results)
     sentence = (
-        f"{listed(engines)} show no alarming difference: every gate passed, and nothing lies outside the alarm band "
-        f"of {checks.ALARM_SCATTERS} seed-to-seed standard deviations. This is no statement of equivalence: "
-        f"{still_open} of {plural(len(results), 'check')} are still open. It needs {seeds_text(needed)}, here "
-        f"{'is' if seeds == 1 else 'are'} {seeds}."
+        f"{behind} of {listed(engines)} show no alarming difference: every gate passed, and "
+        f"nothing lies outside the alarm bands. This is no statement of equivalence: {shown} of "
+        f"{plural(len(results), 'check')} {'is' if shown == 1 else 'are'} EQUIVALENT, and for all of them it takes "
+        f"about {seeds_text(needed)}."
     )
     if needed is None:
-        return sentence, "Widen the margins that no reasonable number of seeds can meet."
+        return sentence, "Widen the margins that no reasonable number of packings can meet."
     return sentence, f"For a statement of equivalence run the same with --seeds {needed}."
 
 
-def _unsettled(results, seeds) -> tuple[str, str]:
+def _unsettled(results, behind) -> tuple[str, str]:
     open_ones = [result for result in results if result.outcome == checks.INCONCLUSIVE]
     first = open_ones[0]
     sentence = (
-        f"{plural(seeds, 'seed')} would show equal engines as equivalent, but {len(open_ones)} of "
-        f"{plural(len(results), 'check')} stay open; first {first.check.quantity.title} of {first.pair[0]} "
+        f"{behind} would show equal engines as equivalent, but {len(open_ones)} of "
+        f"{plural(len(results), 'check')} stay INCONCLUSIVE; first {first.check.quantity.title} of {first.pair[0]} "
         f"against {first.pair[1]}: {explanation(first)}."
     )
     return (
         sentence,
-        "The differences are about as large as their margins: look at their cause, or run more seeds.",
+        "The differences are about as large as their margins: look at their cause, or run more packings.",
     )

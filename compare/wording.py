@@ -102,10 +102,29 @@ def interval(result: CheckResult) -> str:
     return " to ".join(signed_difference(result.check, end) for end in result.interval)
 
 
-def needed(result: CheckResult) -> str:
-    if result.seeds_needed is None:
-        return f"> {checks.MOST_SEEDS}"
-    return str(result.seeds_needed)
+def needed(seeds: int | None) -> str:
+    return f"> {checks.MOST_SEEDS}" if seeds is None else str(seeds)
+
+
+def packings(seeds: int, runs_each: Sequence[int] = (1,)) -> str:
+    """ "16 packings × 3 twins": the packings behind a statement, and how many runs each of them has."""
+    fewest, most = min(runs_each, default=1), max(runs_each, default=1)
+    each = str(most) if fewest == most else f"{fewest} to {most}"
+    twins = "" if most == 1 else f" \N{MULTIPLICATION SIGN} {each} twins"
+    return plural(seeds, "packing") + twins
+
+
+def probability(p: float) -> str:
+    return "< 0.0001" if p < 0.0001 else f"{p:.2g}"
+
+
+def claim(result: CheckResult) -> str:
+    """p after Holm of the claim that the mean difference points to: "equivalent: 0.003"; a dash without an interval."""
+    if result.interval is None or not all(map(math.isfinite, result.interval)):
+        return DASH
+    if abs(result.difference) > result.margin:
+        return f"{checks.DIFFERENT}: {probability(result.p_different)}"
+    return f"{checks.EQUIVALENT}: {probability(result.p_equivalent)}"
 
 
 def explanation(result: CheckResult) -> str:
@@ -116,14 +135,29 @@ def explanation(result: CheckResult) -> str:
         shown = signed_difference(result.check, result.difference)
         return (
             f"the mean difference {shown} is outside the alarm band {band(result.check, result.alarm)} "
-            f"({checks.ALARM_SCATTERS} seed-to-seed standard deviations)"
+            f"({checks.ALARM_SCATTERS} seed-to-seed standard deviations, and the margin)"
         )
-    if result.interval is None:
-        return f"one pair of runs gives no interval; equivalence needs {needed(result)} seeds"
+    if len(result.seeds) < checks.SEEDS_FOR_INTERVAL:
+        return (
+            f"{plural(len(result.seeds), 'packing')} can only raise an alarm, and there is none; "
+            f"a statement of equivalence needs {needed(result.seeds_needed)}"
+        )
     where = f"the 90 % interval {interval(result)}"
     limits = f"the margin {margin(result.check)}"
-    if result.outcome == checks.AGREES:
-        return f"{where} lies within {limits}"
-    if result.outcome == checks.DIFFERS:
-        return f"{where} lies wholly outside {limits}"
-    return f"{where} reaches beyond {limits}; equivalence needs {needed(result)} seeds"
+    if result.within or result.beyond:
+        p = result.p_equivalent if result.within else result.p_different
+        place = f"{where} lies {'within' if result.within else 'wholly outside'} {limits}"
+        if result.outcome != checks.INCONCLUSIVE:
+            return f"{place}, p {probability(p)} after Holm"
+        return (
+            f"{place}, but among {plural(result.family, 'check')} that can be chance: p {probability(p)} after Holm, "
+            f"above {checks.ALPHA}; {_to_settle(result)}"
+        )
+    return f"{where} reaches across {limits}: neither equivalence nor a difference is shown; {_to_settle(result)}"
+
+
+def _to_settle(result: CheckResult) -> str:
+    return (
+        f"equal engines need {needed(result.seeds_needed)} packings, "
+        f"a difference as measured {needed(result.seeds_to_settle)}"
+    )

@@ -1,9 +1,15 @@
-"""A case small enough that real runs take a second, and its packing."""
+"""A case small enough that real runs take a second, its packing, and an engine with faults."""
+
+import os
+import shutil
+from pathlib import Path
 
 import pytest
 from small_case import small_case
 
 from crossdem.adapters.packing import make_packing
+
+HERE = Path(__file__).parent
 
 
 @pytest.fixture(scope="session")
@@ -14,3 +20,30 @@ def case():
 @pytest.fixture(scope="session")
 def packing(case, tmp_path_factory):
     return make_packing(case, 1, tmp_path_factory.mktemp("packings") / "seed1")
+
+
+@pytest.fixture
+def fake(tmp_path, monkeypatch):
+    """Puts the fake LIGGGHTS first on the PATH; gives a function that sets its fault, and how often it started."""
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    shutil.copy(HERE / "fake_liggghts.py", programs / "liggghts")
+    monkeypatch.setenv("PATH", f"{programs}:{os.environ['PATH']}")
+    monkeypatch.setenv("FAKE_STARTS", str(tmp_path / "starts"))
+    return Fake(monkeypatch, tmp_path / "starts")
+
+
+class Fake:
+    def __init__(self, monkeypatch, starts):
+        self._monkeypatch = monkeypatch
+        self._starts = starts
+
+    def fault(self, name):
+        self._monkeypatch.setenv("FAKE_FAULT", name)
+
+    def process_ids(self):
+        return (
+            [int(line) for line in self._starts.read_text().split()]
+            if self._starts.exists()
+            else []
+        )

@@ -7,8 +7,16 @@ import pandas as pd
 import pytest
 import synthetic
 
-from crossdem.compare import checks, quantities
-from crossdem.compare.checks import AGREES, DIFFERS, INCONCLUSIVE, NOT_COMPARABLE, Check, evaluate
+from crossdem.compare import checks, equivalence, quantities, wording
+from crossdem.compare.checks import (
+    DIFFERENT,
+    EQUIVALENT,
+    INCONCLUSIVE,
+    NOT_COMPARABLE,
+    Check,
+    evaluate,
+)
+from crossdem.compare.ensemble import packing_means
 
 PAIR = ("liggghts", "native")
 RESISTANCE = quantities.QUANTITIES["mean_resistance_N"]
@@ -29,27 +37,126 @@ def endpoints(liggghts, native, quantity="mean_resistance_N"):
     return pd.DataFrame({quantity: list(rows.values())}, index=index, dtype=float)
 
 
+def judged(liggghts, native, check=None, obstacles=(), pair=PAIR):
+    """The result of one check, the only one of its family."""
+    (result,) = evaluate([check or relative()], pair, endpoints(liggghts, native), obstacles)
+    return result
+
+
 def outcome(liggghts, native, check=None):
-    return evaluate(check or relative(), PAIR, endpoints(liggghts, native)).outcome
+    return judged(liggghts, native, check).outcome
 
 
-def test_identical_runs_agree():
-    assert outcome([1.0, 1.1, 0.9], [1.0, 1.1, 0.9]) == AGREES
+def test_identical_runs_are_equivalent():
+    values = [1.0, 1.1, 0.9, 1.2, 1.0]
+    assert outcome(values, values) == EQUIVALENT
 
 
 def test_what_the_packing_does_to_both_engines_cancels():
-    assert outcome([0.5, 1.01, 2.01], [0.5, 1.0, 2.0]) == AGREES
+    beds = [0.5, 1.0, 2.0, 1.5, 0.8]
+    assert outcome([0.5, 1.01, 2.01, 1.5, 0.8], beds) == EQUIVALENT
+
+
+def test_runs_are_paired_by_seed_not_by_their_place_in_the_table():
+    beds = [0.5, 1.0, 2.0, 1.5, 0.8]
+    table = endpoints(beds, beds)
+    shuffled = table.iloc[[4, 0, 3, 1, 2, 5, 6, 7, 8, 9]]
+    (result,) = evaluate([relative()], PAIR, shuffled)
+    assert (result.outcome, result.interval) == (EQUIVALENT, (0.0, 0.0))
+
+
+def test_only_packings_that_both_ran_are_compared():
+    table = endpoints([1.0] * 5 + [9.0], [1.0] * 5)
+    (result,) = evaluate([relative()], PAIR, table)
+    assert (result.outcome, result.seeds) == (EQUIVALENT, (1, 2, 3, 4, 5))
+
+
+def test_three_twins_of_a_packing_count_once_however_many_the_other_engine_has():
+    """Differences by packing 0.1, 0.2, 0.3, 0.2, 0.2; as 15 runs the interval would be half as wide."""
+    shifts = [0.1, 0.2, 0.3, 0.2, 0.2]
+    rows = {
+        (engine, seed, twin): 1.0 + (shift + (twin - 1) * 0.05 if engine == "liggghts" else 0)
+        for seed, shift in enumerate(shifts, start=1)
+        for engine, twins in (("liggghts", 3), ("native", 1))
+        for twin in range(twins)
+    }
+    index = pd.MultiIndex.from_tuples(rows, names=["engine", "seed", "twin"])
+    runs = pd.DataFrame({"mean_resistance_N": list(rows.values())}, index=index)
+    check = Check(RESISTANCE, "absolute", 0.15, 0.08, "")
+    (result,) = evaluate([check], PAIR, packing_means(runs))
+    half_width = 2.131846786 * math.sqrt(0.02 / 4 / 5)  # t(0.95, 4 degrees of freedom)
+    assert len(result.seeds) == 5
+    assert result.interval == pytest.approx((0.2 - half_width, 0.2 + half_width))
+
+
+@pytest.mark.parametrize("seeds", [1, 2, 4])
+def test_fewer_than_five_packings_only_raise_alarms(seeds):
+    assert outcome([1.0] * seeds, [1.0] * seeds) == INCONCLUSIVE
+    assert outcome([1.2] * seeds, [1.0] * seeds) == INCONCLUSIVE
+    assert outcome([1.5] * seeds, [1.0] * seeds) == DIFFERENT
+
+
+def test_a_difference_that_is_not_significant_is_no_equivalence():
+    """p = 0.9 of no difference, and an interval that reaches far beyond the margin."""
+    result = judged([1.3, 0.7, 1.25, 0.8, 1.0], [1.0] * 5)
+    assert abs(result.difference) < 0.02 and result.outcome == INCONCLUSIVE
+
+
+def test_a_difference_within_the_margin_is_no_alarm_however_little_the_runs_scatter():
+    quiet = relative(margin=0.10, seed_scatter=0.001)
+    assert outcome([1.05] * 5, [1.0] * 5, quiet) == EQUIVALENT
+    assert outcome([1.05], [1.0], quiet) == INCONCLUSIVE
+    assert outcome([1.12], [1.0], quiet) == DIFFERENT
+
+
+@pytest.mark.parametrize("shift", [0.1, -0.1])
+def test_an_interval_that_touches_the_margin_is_inconclusive(shift):
+    noise = np.array([-0.01, 0.01, -0.02, 0.02, 0.0])
+    differences = shift / 2 + noise
+    end = max(map(abs, judged(1 + differences, [1.0] * 5, absolute(1.0)).interval))
+    for share, expected in ((1, INCONCLUSIVE), (1 + 1e-6, EQUIVALENT), (1 - 1e-6, INCONCLUSIVE)):
+        assert outcome(1 + differences, [1.0] * 5, absolute(share * end)) == expected
+    near = min(map(abs, judged(1 + 2 * differences, [1.0] * 5, absolute(1.0)).interval))
+    for share, expected in ((1 + 1e-6, INCONCLUSIVE), (0.99, DIFFERENT)):
+        assert outcome(1 + 2 * differences, [1.0] * 5, absolute(share * near)) == expected
+
+
+@pytest.mark.parametrize(
+    "shift, within, beyond",
+    [
+        (0.0, True, False),
+        (0.1, False, False),
+        (-0.1, False, False),
+        (0.3, False, True),
+        (-0.3, False, True),
+    ],
+)
+def test_where_the_interval_lies(shift, within, beyond):
+    noisy = [1.0 + shift + d for d in (-0.02, 0.02, 0, 0.01, -0.01)]
+    result = judged(noisy, [1.0] * 5, absolute(0.1))
+    assert (result.within, result.beyond) == (within, beyond)
+
+
+def absolute(margin):
+    return Check(RESISTANCE, "absolute", margin, 0.08, "")
+
+
+def test_differences_without_scatter_at_the_margin_are_inconclusive():
+    margin = 1.5 - 1.0
+    assert outcome([1.5] * 5, [1.0] * 5, absolute(margin)) == INCONCLUSIVE
+    assert outcome([1.5] * 5, [1.0] * 5, absolute(margin + 0.01)) == EQUIVALENT
+    assert outcome([1.5] * 5, [1.0] * 5, absolute(margin - 0.01)) == DIFFERENT
 
 
 def test_a_shift_beyond_the_alarm_band_differs_at_any_number_of_seeds():
-    assert outcome([1.5], [1.0]) == DIFFERS
-    assert outcome([1.0], [1.5]) == DIFFERS
-    assert outcome([1.5, 1.6], [1.0, 1.1]) == DIFFERS
+    assert outcome([1.5], [1.0]) == DIFFERENT
+    assert outcome([1.0], [1.5]) == DIFFERENT
+    assert outcome([1.5, 1.6], [1.0, 1.1]) == DIFFERENT
 
 
 def test_the_alarm_band_is_four_seed_to_seed_scatters():
     just_inside, just_outside = 1 + 0.31, 1 + 0.33
-    for value, expected in ((just_inside, INCONCLUSIVE), (just_outside, DIFFERS)):
+    for value, expected in ((just_inside, INCONCLUSIVE), (just_outside, DIFFERENT)):
         b = 1.0
         a = b * (2 + (value - 1)) / (2 - (value - 1))  # (a - b) / mean = value - 1
         assert outcome([a], [b]) == expected
@@ -62,24 +169,24 @@ def test_runs_that_scatter_more_than_the_case_states_widen_the_alarm_band():
         1.0,
         1.6,
     ]  # a scatter of 0.35 / 1.3 in one engine and 0.35 / 1.8 in the other; 0.08 is stated
-    result = evaluate(relative(), PAIR, endpoints([value + 0.5 for value in wild], wild))
+    result = judged([value + 0.5 for value in wild], wild)
     calmer = math.sqrt(4 * 0.3**2 / 3) / 1.8
     assert result.scatter == pytest.approx(calmer)
     assert not result.alarmed and result.alarm == pytest.approx(4 * calmer)
 
 
 def test_an_engine_that_scatters_wildly_does_not_excuse_itself():
-    assert outcome([0.95, 0.1], [0.95, 1.0]) == DIFFERS
-    assert outcome([0.5, 0.15], [0.95, 1.0]) == DIFFERS
+    assert outcome([0.95, 0.1], [0.95, 1.0]) == DIFFERENT
+    assert outcome([0.5, 0.15], [0.95, 1.0]) == DIFFERENT
 
 
 def test_runs_that_scatter_less_than_the_case_states_leave_the_alarm_band_as_it_is():
-    assert evaluate(relative(), PAIR, endpoints([1.0, 1.01], [1.0, 1.02])).scatter == 0.08
+    assert judged([1.0, 1.01], [1.0, 1.02]).scatter == 0.08
 
 
 def test_an_interval_wholly_outside_the_margin_differs_from_five_seeds_on():
     shifted = [1.20, 1.21, 1.19, 1.20, 1.21]
-    assert outcome(shifted, [1.0] * 5) == DIFFERS
+    assert outcome(shifted, [1.0] * 5) == DIFFERENT
     assert outcome(shifted[:4], [1.0] * 4) == INCONCLUSIVE
 
 
@@ -87,35 +194,33 @@ def test_two_noisy_seeds_are_inconclusive():
     assert outcome([1.05, 0.97], [0.95, 1.02]) == INCONCLUSIVE
 
 
-def test_one_seed_is_inconclusive_as_it_gives_no_interval():
-    result = evaluate(relative(), PAIR, endpoints([1.0], [1.0]))
+def test_one_seed_gives_no_interval():
+    result = judged([1.0], [1.0])
     assert (result.outcome, result.interval) == (INCONCLUSIVE, None)
 
 
 def test_the_interval_is_students_90_percent_interval_of_the_paired_differences():
-    result = evaluate(
-        Check(RESISTANCE, "absolute", 0.1, 0.08, ""), PAIR, endpoints([1.1, 1.3], [1.0, 1.0])
-    )
+    result = judged([1.1, 1.3], [1.0, 1.0], absolute(0.1))
     half_width = 6.313751515 * 0.1  # t(0.95, 1 degree of freedom) times scatter / sqrt(2)
     assert result.difference == pytest.approx(0.2)
     assert result.interval == pytest.approx((0.2 - half_width, 0.2 + half_width))
 
 
 def test_relative_differences_are_over_the_mean_of_both_engines():
-    result = evaluate(relative(), PAIR, endpoints([1.1, 1.1], [0.9, 0.9]))
+    result = judged([1.1, 1.1], [0.9, 0.9])
     assert result.difference == pytest.approx(0.2)
     assert result.means == pytest.approx((1.1, 0.9))
 
 
 def test_a_ratio_is_compared_as_a_factor_either_way():
     ratio = Check(RESISTANCE, "ratio", 1.33, 1.15, "")
-    up = evaluate(ratio, PAIR, endpoints([2.0, 2.0], [1.0, 1.0]))
-    down = evaluate(ratio, PAIR, endpoints([1.0, 1.0], [2.0, 2.0]))
+    up = judged([2.0, 2.0], [1.0, 1.0], ratio)
+    down = judged([1.0, 1.0], [2.0, 2.0], ratio)
     assert up.difference == pytest.approx(math.log(2))
     assert down.difference == pytest.approx(-math.log(2))
-    assert up.outcome == down.outcome == DIFFERS  # 2 > 1.15^4 = 1.75
-    assert outcome([1.3, 1.3], [1.0, 1.0], ratio) == AGREES
-    assert outcome([1.0, 1.0], [1.3, 1.3], ratio) == AGREES
+    assert up.outcome == down.outcome == DIFFERENT  # 2 > 1.15^4 = 1.75
+    assert outcome([1.3] * 5, [1.0] * 5, ratio) == EQUIVALENT
+    assert outcome([1.0] * 5, [1.3] * 5, ratio) == EQUIVALENT
 
 
 def test_a_ratio_of_nothing_is_not_comparable():
@@ -124,15 +229,19 @@ def test_a_ratio_of_nothing_is_not_comparable():
 
 
 def test_an_obstacle_makes_even_identical_runs_not_comparable():
-    table = endpoints([1.0, 1.1], [1.0, 1.1])
-    result = evaluate(relative(), PAIR, table, ("native, seed 1: the bed does not rest",))
+    result = judged([1.0, 1.1], [1.0, 1.1], obstacles=["native, seed 1: the bed does not rest"])
     assert result.outcome == NOT_COMPARABLE
     assert result.difference == 0  # still told
 
 
 def test_an_engine_without_runs_is_not_comparable():
-    result = evaluate(relative(), ("yade", "native"), endpoints([1.0], [1.0]))
+    result = judged([1.0], [1.0], pair=("yade", "native"))
     assert (result.outcome, result.seeds) == (NOT_COMPARABLE, ())
+
+
+def test_a_ratio_of_negative_values_is_not_comparable():
+    ratio = Check(RESISTANCE, "ratio", 1.33, 1.15, "")
+    assert outcome([-1.0] * 5, [-1.0] * 5, ratio) == NOT_COMPARABLE
 
 
 def test_a_quantity_that_is_not_a_number_is_not_comparable():
@@ -142,11 +251,11 @@ def test_a_quantity_that_is_not_a_number_is_not_comparable():
 def test_the_seeds_needed_give_the_power_that_they_promise():
     """Two equal engines, simulated: about 9 of 10 comparisons end in agreement."""
     margin, scatter = 0.10, 0.08 * math.sqrt(2)
-    seeds = checks.seeds_needed(margin, scatter)
+    seeds = equivalence.seeds_needed(margin, scatter)
     assert seeds == 16
     rng = np.random.default_rng(1)
     agreed = [
-        outcome(1 + rng.normal(0, 0.08, seeds), 1 + rng.normal(0, 0.08, seeds)) == AGREES
+        outcome(1 + rng.normal(0, 0.08, seeds), 1 + rng.normal(0, 0.08, seeds)) == EQUIVALENT
         for _ in range(400)
     ]
     assert 0.86 < np.mean(agreed) < 0.95
@@ -156,16 +265,60 @@ def test_the_seeds_needed_give_the_power_that_they_promise():
     "margin, scatter, seeds", [(0.01, 0.0057, 6), (1.0, 0.0, 2), (1.0, 1e-9, 2), (1e-6, 1.0, None)]
 )
 def test_the_seeds_needed_at_and_between_the_ends(margin, scatter, seeds):
-    assert checks.seeds_needed(margin, scatter) == seeds
+    assert equivalence.seeds_needed(margin, scatter) == seeds
 
 
 def test_from_ten_seeds_on_the_seeds_needed_follow_the_measured_scatter():
     rng = np.random.default_rng(1)
     quiet = 1 + rng.normal(0, 0.001, 10)
-    few = evaluate(relative(), PAIR, endpoints(quiet[:9], np.ones(9)))
-    many = evaluate(relative(), PAIR, endpoints(quiet, np.ones(10)))
+    few = judged(quiet[:9], np.ones(9))
+    many = judged(quiet, np.ones(10))
     assert few.seeds_needed == 16
-    assert many.seeds_needed < 5
+    assert many.seeds_needed == checks.SEEDS_FOR_INTERVAL
+
+
+def test_a_check_without_a_value_leaves_the_others_theirs_and_stays_in_their_family():
+    table = endpoints([1.0, 1.1, 0.95, 1.0, 1.0], [1.0] * 5)
+    table["work_J"] = np.nan
+    empty = Check(quantities.QUANTITIES["work_J"], "relative", 0.1, 0.08, "")
+    found, lost = evaluate([relative(), empty], PAIR, table)
+    alone = judged([1.0, 1.1, 0.95, 1.0, 1.0], [1.0] * 5)
+    assert lost.outcome == NOT_COMPARABLE and found.outcome != NOT_COMPARABLE
+    assert found.p_equivalent == pytest.approx(2 * alone.p_equivalent)
+
+
+def test_each_check_reads_its_own_column_and_holds_it_against_its_own_margin():
+    table = endpoints([1.2] * 5, [1.0] * 5)
+    table["work_J"] = [3.0] * 10
+    work = Check(quantities.QUANTITIES["work_J"], "relative", 0.1, 0.08, "")
+    wide = Check(RESISTANCE, "relative", 0.3, 0.08, "")
+    outcomes = [result.outcome for result in evaluate([relative(), work, wide], PAIR, table)]
+    assert outcomes == [DIFFERENT, EQUIVALENT, EQUIVALENT]
+
+
+def test_an_interval_within_the_margin_is_not_enough_among_many_checks():
+    noisy = [1.12, 0.95, 1.05, 0.93, 1.02, 1.01]
+    family = [relative()] * 10
+    alone = judged(noisy, [1.0] * 6)
+    (among, *_) = evaluate(family, PAIR, endpoints(noisy, [1.0] * 6))
+    assert (alone.outcome, among.outcome) == (EQUIVALENT, INCONCLUSIVE)
+    assert among.within and among.p_equivalent == pytest.approx(10 * alone.p_equivalent)
+    said = wording.explanation(among)
+    assert "lies within the margin ±10 %, but among 10 checks that can be chance" in said
+    assert among.seeds_needed > alone.seeds_needed == 16
+
+
+def test_planning_holds_the_easiest_check_against_the_level_that_holm_leaves_it():
+    hard, easy = relative(margin=0.10), relative(margin=0.40)
+    results = evaluate([hard, easy], PAIR, endpoints([1.0] * 5, [1.0] * 5))
+    assert [result.level for result in results] == pytest.approx([0.05, 0.025])
+
+
+def test_what_it_takes_to_settle_a_difference_as_measured_is_more_the_nearer_the_margin():
+    near, far = (
+        judged([1 + s + d for d in (-0.02, 0.02, 0, 0.01, -0.01)], [1.0] * 5) for s in (0.09, 0.01)
+    )
+    assert near.seeds_to_settle > far.seeds_to_settle >= far.seeds_needed == 16
 
 
 def test_a_check_of_an_unknown_quantity_is_a_fault_with_its_key_path():

@@ -127,7 +127,7 @@ def test_compare_refuses_the_same_run_twice(finished, tmp_path):
     run = _datasets(finished)[0]
     ended = crossdem("compare", run, run, cwd=tmp_path)
     assert ended.returncode == ExitCode.BAD_INPUT
-    assert "given 2 times" in ended.stderr
+    assert "native, seed 1: given more than once" in ended.stderr
     assert not any(tmp_path.iterdir())
 
 

@@ -13,6 +13,7 @@ from rich.console import Console
 from crossdem.compare import pages, quantities, report, summary
 from crossdem.compare.colours import engine_styles
 from crossdem.compare.comparison import compare_runs
+from crossdem.compare.ensemble import Ensemble
 
 HOSTILE = "<script>alert('1')</script> \"q\" & | `土のモデル` [bold]$x_1$\x07"
 ENGINES = ("native", "liggghts", "yade")
@@ -72,6 +73,40 @@ def test_the_page_says_the_verdict_first_and_shows_every_part(tmp_path):
     assert html.count('<svg class="bed"') == 4 * len(ENGINES)
     assert markdown.startswith("# CONSISTENT: A title")
     assert synthetic.MEAN_RESISTANCE["reason"] in html and "±10 %" in html.replace("\xa0", " ")
+
+
+def test_the_page_says_outcome_interval_p_and_packings_of_each_pair_and_why(tmp_path):
+    html, markdown = written(compared(), tmp_path)
+    shown = Page(html).text.replace("\xa0", " ")
+    for text in (shown, markdown):
+        assert "p after Holm" in text and "2 / 16" in text and "inconclusive" in text
+        assert "2 packings can only raise an alarm" in text
+    assert "never counts as agreement" in shown
+    assert html.count('<span class="outcome inconclusive">inconclusive</span> in 1 of 1') == 3
+
+
+def twins(engine, run_case):
+    return [
+        synthetic.dataset(
+            run_case, engine, seed, twin, noise=0.3, packing_hash=f"{seed}{twin}" * 32
+        )
+        for seed in (1, 2, 3, 4, 5)
+        for twin in (0, 1)
+    ]
+
+
+def test_engines_that_are_only_recorded_are_in_every_table_and_in_no_picture_of_a_bed(tmp_path):
+    run_case = synthetic.case(title="A title")
+    recorded = Ensemble.of(twins("yade", run_case))
+    comparison = compare_runs(run_case, twins("native", run_case), recorded=recorded)
+    html, markdown = written(comparison, tmp_path)
+    assert "recorded: yade 1.0" in html and "yade against native" in markdown
+    assert html.count('<svg class="bed"') == 4 and "How much is chaos" in html
+    assert "5 packings × 2 twins" in Page(html).text
+    runs = json.loads((tmp_path / "report.json").read_text())["runs"]
+    assert [run["recorded"] for run in runs] == [False] * 10 + [True] * 10
+    alone = compare_runs(run_case, [], recorded=recorded)
+    assert "yade" in written(alone, tmp_path)[0]
 
 
 def test_the_page_loads_and_runs_nothing(tmp_path):

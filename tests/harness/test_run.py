@@ -19,35 +19,6 @@ from crossdem.adapters.one_run import Limits
 from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run import RunRequest, run_all
 
-HERE = Path(__file__).parent
-
-
-@pytest.fixture
-def fake(tmp_path, monkeypatch):
-    """Puts the fake LIGGGHTS first on the PATH; gives a function that sets its fault, and how often it started."""
-    programs = tmp_path / "bin"
-    programs.mkdir()
-    shutil.copy(HERE / "fake_liggghts.py", programs / "liggghts")
-    monkeypatch.setenv("PATH", f"{programs}:{os.environ['PATH']}")
-    monkeypatch.setenv("FAKE_STARTS", str(tmp_path / "starts"))
-    return Fake(monkeypatch, tmp_path / "starts")
-
-
-class Fake:
-    def __init__(self, monkeypatch, starts):
-        self._monkeypatch = monkeypatch
-        self._starts = starts
-
-    def fault(self, name):
-        self._monkeypatch.setenv("FAKE_FAULT", name)
-
-    def process_ids(self):
-        return (
-            [int(line) for line in self._starts.read_text().split()]
-            if self._starts.exists()
-            else []
-        )
-
 
 def liggghts(case, packing, out_dir, **options):
     [result] = run_all([RunRequest(case, packing, "liggghts")], out_dir, 1, **options)

@@ -1,11 +1,15 @@
 """The verdict: which of several findings wins, and what it takes to say AGREES."""
 
+import gc
+import weakref
+
 import pytest
 import synthetic
 
 from crossdem import ExitCode
 from crossdem.compare import checks, verdict
 from crossdem.compare.comparison import ComparisonError, compare_runs
+from crossdem.compare.ensemble import Ensemble
 
 ENGINES = ("native", "liggghts", "yade")
 RUN_CASE = synthetic.case()
@@ -20,6 +24,16 @@ def runs(seeds=2, factors=(1.0, 1.0, 1.0), noise=0.0, engines=ENGINES):
     ]
 
 
+def twins(number, seeds=5, engines=("native", "liggghts")):
+    """`number` runs of each packing, each on a twin of its own."""
+    return [
+        synthetic.dataset(RUN_CASE, engine, seed, twin, packing_hash=f"{seed:02}{twin:02}" * 16)
+        for engine in engines
+        for seed in range(1, seeds + 1)
+        for twin in range(number)
+    ]
+
+
 def test_two_identical_runs_are_consistent_as_two_seeds_prove_nothing():
     assert compare_runs(RUN_CASE, runs()).verdict.word == verdict.CONSISTENT
 
@@ -28,14 +42,14 @@ def test_identical_runs_of_enough_seeds_agree():
     comparison = compare_runs(RUN_CASE, runs(seeds=16))
     assert comparison.verdict.word == verdict.AGREES
     assert comparison.verdict.exit_code == ExitCode.AGREES
-    assert "native, liggghts and yade agree" in comparison.verdict.sentence
+    assert "native, liggghts and yade are EQUIVALENT" in comparison.verdict.sentence
 
 
 def test_two_noisy_seeds_are_consistent_and_it_says_how_many_seeds_a_statement_needs():
     said = compare_runs(RUN_CASE, runs(noise=0.3)).verdict
     assert (said.word, said.exit_code) == (verdict.CONSISTENT, ExitCode.AGREES)
     assert (said.seeds, said.seeds_needed) == (2, 16)
-    assert "no statement of equivalence" in said.sentence and "16 seeds" in said.sentence
+    assert "no statement of equivalence" in said.sentence and "16 packings" in said.sentence
     assert "--seeds 16" in said.next_step
 
 
@@ -96,14 +110,16 @@ def test_one_failed_run_keeps_its_pairs_from_being_compared():
     comparison = compare_runs(RUN_CASE, present, failures)
     outcomes = {result.pair: result.outcome for result in comparison.results}
     assert outcomes[("liggghts", "native")] == checks.NOT_COMPARABLE
-    assert outcomes[("yade", "native")] == checks.AGREES
+    assert outcomes[("yade", "native")] == checks.INCONCLUSIVE
 
 
-def test_a_run_that_was_never_asked_for_keeps_its_pairs_from_being_compared():
-    present = [run for run in runs() if (run.engine, run.seed) != ("liggghts", 2)]
-    said = compare_runs(RUN_CASE, present).verdict
-    assert said.word == verdict.INCONCLUSIVE
-    assert "liggghts, seed 2: not run" in said.sentence
+def test_engines_are_compared_on_the_packings_that_both_were_asked_to_run():
+    present = [run for run in runs(7) if (run.engine, run.seed) != ("liggghts", 2)]
+    comparison = compare_runs(RUN_CASE, present)
+    assert (comparison.verdict.word, comparison.verdict.seeds) == (verdict.AGREES, 6)
+    shared = {result.pair: result.seeds for result in comparison.results}
+    assert shared[("liggghts", "native")] == (1, 3, 4, 5, 6, 7)
+    assert shared[("yade", "native")] == (1, 2, 3, 4, 5, 6, 7)
 
 
 def test_a_difference_wins_over_a_failure_and_a_failure_over_an_open_question():
@@ -149,5 +165,64 @@ def test_what_is_no_comparison_is_refused_with_every_fault():
     with pytest.raises(ComparisonError) as refused:
         compare_runs(RUN_CASE, wrong)
     assert len(refused.value.faults) == 2
-    assert "native, seed 1: given 2 times" in refused.value.faults
+    assert "native, seed 1: given more than once" in refused.value.faults
     assert any("run of another case" in fault for fault in refused.value.faults)
+
+
+def test_runs_are_of_this_case_whatever_margin_they_were_made_under():
+    wider = synthetic.case([{**synthetic.MEAN_RESISTANCE, "margin": 0.5}], title="Another title")
+    made_then = [synthetic.dataset(wider, engine) for engine in ENGINES]
+    assert compare_runs(RUN_CASE, made_then).verdict.word == verdict.CONSISTENT
+
+
+def test_twins_are_averaged_and_a_packing_counts_once():
+    comparison = compare_runs(RUN_CASE, twins(3))
+    assert comparison.verdict.word == verdict.AGREES
+    assert "from 5 packings \N{MULTIPLICATION SIGN} 3 twins" in comparison.verdict.sentence
+    assert comparison.results[0].seeds == (1, 2, 3, 4, 5)
+    assert len(comparison.ensemble.manifests) == 30 and len(comparison.endpoints) == 10
+    assert {run.twin for run in comparison.datasets} == {0} and len(comparison.datasets) == 10
+
+
+def test_a_twin_whose_gate_failed_keeps_its_engine_from_being_compared():
+    agitated = synthetic.dataset(
+        RUN_CASE, "liggghts", 5, 2, failed_gate=NOT_AT_REST, packing_hash="0502" * 16
+    )
+    comparison = compare_runs(RUN_CASE, [*twins(2), agitated])
+    assert comparison.results[0].outcome == checks.NOT_COMPARABLE
+    assert comparison.verdict.sentence.startswith("Not comparable: liggghts, seed 5, twin 2:")
+
+
+def test_recorded_runs_take_part_and_none_may_be_there_twice():
+    recorded = Ensemble.of(twins(2, engines=("yade",)))
+    comparison = compare_runs(RUN_CASE, iter(twins(2)), recorded=recorded)
+    assert comparison.engines == ENGINES and comparison.verdict.word == verdict.AGREES
+    assert ("yade", "native") in comparison.pairs and comparison.of("yade") == []
+    assert len(comparison.packings("yade")) == 5
+    with pytest.raises(ComparisonError, match="yade, seed 1, twin 1: given more than once"):
+        compare_runs(RUN_CASE, twins(2, engines=ENGINES), recorded=recorded)
+
+
+def test_datasets_are_read_one_by_one():
+    """None but twin 0 of each packing is still there when the next one is read."""
+    made = []
+
+    def read():
+        for engine in ENGINES[:2]:
+            for seed in (1, 2):
+                for twin in range(3):
+                    run = synthetic.dataset(
+                        RUN_CASE, engine, seed, twin, packing_hash=f"{seed:02}{twin:02}" * 16
+                    )
+                    made.append(weakref.ref(run.motion))
+                    yield run
+
+    comparison = compare_runs(RUN_CASE, read())
+    gc.collect()
+    assert len(comparison.datasets) == sum(motion() is not None for motion in made) == 4
+
+
+def test_enough_packings_that_show_every_check_equivalent_agree_whatever_was_planned():
+    comparison = compare_runs(RUN_CASE, runs(seeds=6))
+    assert comparison.results[0].seeds_needed == 16
+    assert (comparison.verdict.word, comparison.verdict.seeds) == (verdict.AGREES, 6)

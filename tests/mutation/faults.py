@@ -1,108 +1,280 @@
-"""Faults to seed in a copy of the native solver, and the program that comes of each: does the ladder notice?"""
+"""Faults to seed in a copy of the native solver: one text of its sources each, and the wrong one in its place.
+
+The product holds none of them. Scalars are wrong in both directions, since a layer may see one of them alone.
+"""
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-from dataclasses import dataclass
-from pathlib import Path
+from workshop import Fault
 
-ROOT = Path(__file__).resolve().parents[2]
-MICRO = ROOT / "reference_cases" / "micro"
+SCALAR = "scalar"  # a number of the material or of the motion
+LAW = "law"  # a term of the contact law, or of the loads that follow from it
+MEMORY = "memory"  # what a contact carries from step to step
+LIST = "list"  # which contacts are looked at
+SURFACE = "surface"  # walls and bar
+RECORD = "record"  # the motion is right, what is written of it is not
 
-
-@dataclass(frozen=True)
-class Fault:
-    """One text of the sources, which stands there once, and the wrong one in its place."""
-
-    name: str
-    file: str  # below solver/src
-    right: str
-    wrong: str
+LAWS = "laws/tanaka.hpp"
+STEP = "step.hpp"
+MOTION = "integrators.hpp"
+SET_UP = "simulation.cpp"
+CONTACTS = "contacts.hpp"
+SURFACES = "surfaces.hpp"
+BAR = "bar.hpp"
 
 
-# The formulas of the paper's scheme, each in the one place where it stands.
-FAULTS = (
+def _of_contacts(name: str, change: str, which: str = "&w.particle_particle, &w.particle_wall"):
+    """A parameter of all contacts, or `which`, changed before the first step; `p` is the set of parameters."""
+    right = "  if (bar_tip) w.surfaces.bar.emplace("
+    wrong = f"  for (ContactParameters* p : {{{which}}}) {change};\n{right}"
+    return Fault(name, SCALAR, SET_UP, right, wrong)
+
+
+def _factor(name: str, kind: str, file: str, before: str, after: str, factor: str) -> Fault:
+    """`factor` between the two texts `before` and `after`."""
+    return Fault(name, kind, file, before + after, before + factor + after)
+
+
+WALLS = "&w.particle_wall"
+PAIRS = "&w.particle_particle"
+OUTDATED = "return moved + std::max(moved, bar_moved) > "
+ADVANCE = "++i) scheme_.integrator.advance(p_, i, w_.loads[i], w_.gravity, "
+
+PARAMETERS = (
+    _of_contacts("friction +10 %", "p->friction *= 1.1"),
+    _of_contacts("friction -10 %", "p->friction *= 0.9"),
+    _of_contacts("wall friction +10 %", "p->friction *= 1.1", WALLS),
+    _of_contacts("wall friction -10 %", "p->friction *= 0.9", WALLS),
+    _of_contacts("friction silently off", "p->friction = 0.0"),
+    _of_contacts("tangent of the friction coefficient", "p->friction = std::tan(p->friction)"),
+    _of_contacts("pair friction on walls", "p->friction = w.particle_particle.friction", WALLS),
+    _of_contacts("normal stiffness x 2", "p->normal_stiffness *= 2"),
+    _of_contacts("normal stiffness x 0.5", "p->normal_stiffness /= 2"),
+    _of_contacts("shear stiffness x 2", "p->shear_stiffness *= 2"),
+    _of_contacts("shear stiffness x 0.5", "p->shear_stiffness /= 2"),
+    _of_contacts("double the damping at walls", "p->normal_damping *= 2", WALLS),
+    _of_contacts("half the damping at walls", "p->normal_damping /= 2", WALLS),
+    _of_contacts("double the damping of pairs", "p->normal_damping *= 2", PAIRS),
+    _of_contacts("half the damping of pairs", "p->normal_damping /= 2", PAIRS),
+    _factor("density x 1.1", SCALAR, "case.cpp", "return ", "particles.density", "1.1 * "),
+    _factor("density x 0.9", SCALAR, "case.cpp", "return ", "particles.density", "0.9 * "),
     Fault(
-        "torque arm to the contact point",
-        "step.hpp",
-        "readings.torque_arm == TorqueArm::radius ?",
-        "readings.torque_arm == TorqueArm::contact_point ?",
+        "mass of a sphere",
+        SCALAR,
+        "case.cpp",
+        "radius * radius * container.thickness",
+        "radius * radius * (4 * radius / 3)",
     ),
     Fault(
-        "history lost with the neighbour list",
-        "contacts.hpp",
-        "contact.memory = old_contact->memory;",
-        "contact.memory = {};",
+        "inertia of a sphere", SCALAR, "state.cpp", "push_back(0.5 * disc", "push_back(0.4 * disc"
     ),
+    _factor(
+        "gravity 9.81", SCALAR, MOTION, "acceleration.y() -= ", "gravity;", "9.81 / 9.80665 * "
+    ),
+    Fault(
+        "gravity without mass",
+        SCALAR,
+        MOTION,
+        "acceleration.y() -= gravity;",
+        "acceleration.y() -= gravity / p.mass[i];",
+    ),
+    _factor("time step +10 %", SCALAR, STEP, ADVANCE, "w_.dt)", "1.1 * "),
+    _factor("time step -10 %", SCALAR, STEP, ADVANCE, "w_.dt)", "0.9 * "),
+)
+
+FORMULAS = (
     Fault(
         "slip cap from the total normal force",
-        "laws/tanaka.hpp",
+        LAW,
+        LAWS,
         "readings.slip_cap == SlipCap::spring ?",
         "readings.slip_cap == SlipCap::total ?",
     ),
-    Fault("inertia of a sphere", "state.cpp", "inertia.push_back(0.5 *", "inertia.push_back(0.4 *"),
     Fault(
-        "half the damping at walls",
-        "simulation.cpp",
-        ".particle_wall = setup.particle_wall,",
-        ".particle_wall = [p = setup.particle_wall]() mutable { p.normal_damping /= 2; return p; }(),",
+        "tension allowed",
+        LAW,
+        LAWS,
+        "if (spring.normal < 0.0) return lose(spring);",
+        "if (spring.normal < -1e300) return lose(spring);",
+    ),
+    Fault(
+        "dashpot kept while sliding",
+        LAW,
+        LAWS,
+        "f.shear = spring.shear = std::copysign(slip_force, spring.shear);",
+        "spring.shear = std::copysign(slip_force, spring.shear);\n"
+        "      f.shear = spring.shear + p.shear_damping * u.damped_shear / dt;",
+    ),
+    Fault(
+        "whole step at first contact", LAW, LAWS, "u = share_in_contact(u);", "u.overlap *= 1.0;"
+    ),
+    Fault(
+        "spin of the wrong sign in pairs",
+        LAW,
+        STEP,
+        "f.arm_i * p_.rotation[i] + f.arm_j * p_.rotation[j]",
+        "f.arm_i * p_.rotation[i] - f.arm_j * p_.rotation[j]",
     ),
     Fault(
         "spin of the wrong sign at walls",
-        "step.hpp",
+        LAW,
+        STEP,
         "displacement(contact.surface), arm_i * p_.rotation[i]",
         "displacement(contact.surface), -arm_i * p_.rotation[i]",
     ),
     Fault(
-        "tangent of the friction coefficient",
-        "laws/tanaka.hpp",
-        "p.friction * (",
-        "std::tan(p.friction) * (",
+        "torque arm to the contact point",
+        LAW,
+        STEP,
+        "readings.torque_arm == TorqueArm::radius ?",
+        "readings.torque_arm == TorqueArm::contact_point ?",
+    ),
+    Fault(
+        "no moment on the partner",
+        LAW,
+        STEP,
+        "add(contact.j, f.force, -f.normal, f.arm_j);",
+        "add(contact.j, f.force, -f.normal, 0.0);",
+    ),
+    Fault(
+        "radius of one for both",
+        LAW,
+        STEP,
+        "const double reach = p_.radius[i] + p_.radius[j];",
+        "const double reach = 2 * p_.radius[i];",
+    ),
+    Fault(
+        "rotation off", LAW, MOTION, "p.spin[i] += load.moment", "p.spin[i] += 0.0 * load.moment"
+    ),
+    Fault(
+        "displacement not averaged",
+        LAW,
+        MOTION,
+        "0.5 * (p.displacement[i] + p.velocity[i] * dt);",
+        "p.velocity[i] * dt;",
     ),
 )
 
+MEMORIES = (
+    Fault(
+        "history lost at walls",
+        MEMORY,
+        STEP,
+        "const double overlap = p_.radius[i] - nearest.distance;",
+        "const double overlap = p_.radius[i] - nearest.distance;\n    contact.memory.shear = 0.0;",
+    ),
+    Fault(
+        "history lost with the neighbour list",
+        MEMORY,
+        CONTACTS,
+        "contact.memory = old_contact->memory;",
+        "contact.memory = {};",
+    ),
+    Fault(
+        "spring kept after parting",
+        MEMORY,
+        STEP,
+        "if (distance_squared >= reach * reach) {\n      contact.memory = {};",
+        "if (distance_squared >= reach * reach) {\n      contact.memory.normal = 0.0;",
+    ),
+)
 
-class Workshop:
-    """A copy of the solver's sources in `folder`, and a build of it."""
+LISTS = (
+    _factor("neighbour list never made anew", LIST, CONTACTS, OUTDATED, "skin_;", "1e9 * "),
+    _factor("neighbour list kept too long", LIST, CONTACTS, OUTDATED, "skin_;", "3 * "),
+    Fault(
+        "neighbour list blind to the bar",
+        LIST,
+        CONTACTS,
+        "return moved + std::max(moved, bar_moved) > skin_;",
+        "return moved + moved > skin_ + 0.0 * bar_moved;",
+    ),
+)
 
-    def __init__(self, folder: Path):
-        self.sources, self.build = folder / "sources", folder / "build"
-        shutil.copytree(ROOT / "solver", self.sources / "solver")
-        shutil.copyfile(ROOT / "CMakeLists.txt", self.sources / "CMakeLists.txt")
-        flags = ["-DBUILD_TESTING=OFF", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1"]
-        _quietly("cmake", "-S", self.sources, "-B", self.build, *flags)
+BOUNDARIES = (
+    Fault(
+        "bar without its right face",
+        SURFACE,
+        SURFACES,
+        "return nearest.distance < radius &&",
+        "return nearest.distance < radius && !(surface == Surface::bar && nearest.normal.x() == -1.0) &&",
+    ),
+    Fault(
+        "bar without its corners",
+        SURFACE,
+        SURFACES,
+        "(corner == BarCorner::nearest_point ||",
+        "(corner == BarCorner::faces_only ||",
+    ),
+    Fault(
+        "bar whose motion is not felt",
+        SURFACE,
+        BAR,
+        "displacement_.y() = -geometry_.speed * dt;",
+        "displacement_.y() = -0.0 * dt;",
+    ),
+    _factor(
+        "bar 10 % too fast",
+        SURFACE,
+        BAR,
+        "start_(tip), tip_(tip) {",
+        "}",
+        "geometry_.speed *= 1.1;",
+    ),
+    _factor(
+        "bar 10 % too slow",
+        SURFACE,
+        BAR,
+        "start_(tip), tip_(tip) {",
+        "}",
+        "geometry_.speed *= 0.9;",
+    ),
+    Fault(
+        "right wall 0.1 % too far left",
+        SURFACE,
+        SURFACES,
+        "return {{1.0, 0.0}, width - centre.x()};",
+        "return {{1.0, 0.0}, 0.999 * width - centre.x()};",
+    ),
+)
 
-    def solver(self, fault: Fault | None = None) -> Path:
-        """The program with this fault and no other, built in about two seconds after the first."""
-        if fault is None:
-            return self._program()
-        file = self.sources / "solver" / "src" / fault.file
-        sound = file.read_text()
-        assert sound.count(fault.right) == 1, f"{fault.file} holds {fault.right!r} not just once"
-        try:
-            file.write_text(sound.replace(fault.right, fault.wrong))
-            return self._program()
-        finally:
-            file.write_text(sound)
+RECORDS = (
+    Fault(
+        "bar force without shear",
+        RECORD,
+        STEP,
+        "w_.totals.add(w_.surfaces, contact.surface, centre, add(i, force, nearest.normal, arm_i));",
+        "add(i, force, nearest.normal, arm_i);\n"
+        "    w_.totals.add(w_.surfaces, contact.surface, centre, -force.normal * nearest.normal);",
+    ),
+    Fault(
+        "bar force without its right face",
+        RECORD,
+        "world.hpp",
+        "if (surface == Surface::bar) (",
+        "if (surface == Surface::bar && centre.x() < surfaces.bar->right()) (",
+    ),
+    Fault(
+        "tip and shaft confused",
+        RECORD,
+        "world.hpp",
+        "? on_bar.tip : on_bar.shaft)",
+        "? on_bar.shaft : on_bar.tip)",
+    ),
+    Fault(
+        "contacts counted across gaps",
+        RECORD,
+        SET_UP,
+        "close_pairs(state_->world.particles, 0.0).size();",
+        "close_pairs(state_->world.particles, 2e-5).size();",
+    ),
+    Fault(
+        "kinetic energy without rotation",
+        RECORD,
+        "state.cpp",
+        "particles.inertia[i] * particles.spin[i] *",
+        "0.0 * particles.spin[i] *",
+    ),
+)
 
-    def _program(self) -> Path:
-        _quietly("cmake", "--build", self.build, "--target", "crossdem-solver", "--parallel", "2")
-        return self.build / "solver" / "crossdem-solver"
-
-
-def _quietly(*command) -> None:
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
-def climb(solver: Path, out_dir: Path, ladder: Path = MICRO) -> subprocess.CompletedProcess:
-    """`crossdem check` of the reference cases with a known answer, by this native solver alone."""
-    return subprocess.run(
-        [ROOT / "crossdem", "check", ladder, "--engines=native", f"--out={out_dir / 'out'}"],
-        env={**os.environ, "CROSSDEM_SOLVER": str(solver)},
-        capture_output=True,
-        text=True,
-        timeout=600,
-    )
+FAULTS = PARAMETERS + FORMULAS + MEMORIES + LISTS + BOUNDARIES + RECORDS

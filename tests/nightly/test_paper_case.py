@@ -7,7 +7,7 @@ import pytest
 
 from crossdem import ExitCode
 from crossdem.adapters.dataset import Dataset
-from crossdem.compare.quantities import endpoints
+from crossdem.compare.ensemble import Ensemble
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "harness"))  # command_line.py
 from command_line import REFERENCE, crossdem  # noqa: E402
@@ -22,9 +22,9 @@ def means(folder, command="run", engines="native", friction=0.25):
     override = f"--set=contact.particle_wall.friction={friction}"
     done = crossdem(command, REFERENCE, *options, override, timeout=3000)
     assert done.returncode == ExitCode.AGREES, done.stderr
-    runs = [Dataset.read(run) for run in sorted((folder / "runs").iterdir())]
+    runs = Ensemble.of(map(Dataset.read, sorted((folder / "runs").iterdir()))).endpoints
     assert len(runs) == SEEDS * len(engines.split(","))
-    return endpoints(runs).groupby("engine").mean()
+    return runs.groupby("engine").mean()
 
 
 def test_the_engines_give_the_same_resistance_of_the_right_size(tmp_path):

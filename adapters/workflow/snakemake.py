@@ -1,0 +1,79 @@
+"""Starting Snakemake on a plan: its command, its environment, its end."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import signal
+import sys
+from pathlib import Path
+
+import crossdem
+
+from ..process import Ending, Process
+
+HERE = Path(__file__).resolve().parent
+LOG = "snakemake.log"
+SHIPPED_PROFILES = ("slurm",)  # folders beside this file
+GRACE_S = 5.0  # to end tasks and their engines
+GRACE_ON_CLUSTER_S = 60.0  # to take back what was handed in
+LAST_LINES = 5
+
+
+class WorkflowError(Exception):
+    """Snakemake is missing, or a profile."""
+
+
+class Snakemake:
+    """Snakemake at work on the plan in the folder `call`."""
+
+    def __init__(self, call: Path, jobs: int | None, profile: str | None):
+        """At most `jobs` processes here, or tasks handed in with a profile, whose own number holds for None.
+
+        Raises WorkflowError, OSError.
+        """
+        if not importlib.util.find_spec("snakemake"):
+            raise WorkflowError("snakemake is not installed: apt install snakemake")
+        self.log = call / LOG
+        self._grace_s = GRACE_ON_CLUSTER_S if profile else GRACE_S
+        command = [
+            *(sys.executable, "-m", f"{__package__}.scheduler"),
+            *("--snakefile", str(HERE / "Snakefile"), "--directory", str(call.absolute())),
+            *("--keep-going", "--retries", "1", "--rerun-triggers", "mtime", "--nocolor"),
+            *(_on_cluster(profile, jobs) if profile else _on_cores(jobs)),
+        ]
+        root = Path(crossdem.__file__).resolve().parent
+        paths = [str(root), *filter(None, [os.environ.get("PYTHONPATH")])]
+        self._process = Process(
+            command, Path.cwd(), {"PYTHONPATH": os.pathsep.join(paths)}, self.log
+        )
+
+    def poll(self) -> Ending | None:
+        return self._process.poll()
+
+    def cancel(self) -> None:
+        """End it, its tasks and their engines, or take them back from the cluster."""
+        self._process.kill(signal.SIGINT, self._grace_s)
+
+    def last_words(self) -> str:
+        text = self.log.read_text(encoding="utf-8", errors="replace")
+        return "\n".join([line for line in text.splitlines() if line.strip()][-LAST_LINES:])
+
+
+def profile_folder(profile: str) -> str:
+    """What Snakemake is told. Raises WorkflowError."""
+    if profile in SHIPPED_PROFILES:
+        return str(HERE / profile)
+    if not (Path(profile) / "config.yaml").is_file():
+        raise WorkflowError(
+            f"{profile}: neither {', '.join(SHIPPED_PROFILES)} nor a folder with a config.yaml"
+        )
+    return str(Path(profile).absolute())
+
+
+def _on_cores(jobs: int) -> list[str]:
+    return ["--cores", str(jobs), "--scheduler", "greedy"]
+
+
+def _on_cluster(profile: str, jobs: int | None) -> list[str]:
+    return ["--profile", profile_folder(profile), *(["--jobs", str(jobs)] if jobs else [])]

@@ -1,0 +1,111 @@
+"""Runs on their way into a comparison: which may enter, with which gates, and what forbids to compare two engines."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from crossdem.adapters.case import Case
+from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.gates import REFERENCE, contacts_at_rest, with_contacts_gate
+
+Manifests = dict[tuple[str, int, int], dict]  # by engine, seed and twin
+
+
+@dataclass
+class Intake:
+    """Lets the runs of one case pass, one by one, and keeps what pictures are drawn of."""
+
+    case: Case
+    seen: frozenset[tuple[str, int, int]]  # runs that are there already
+    faults: list[str] = field(default_factory=list)  # of the runs that may not pass
+    _kept: list[Dataset] = field(default_factory=list)
+    _contacts: dict[str, int] = field(default_factory=dict)  # of the native run, by packing_hash
+
+    def sound(self, datasets: Iterable[Dataset]) -> Iterator[Dataset]:
+        """Those of them that belong here, each once and with its gate on contacts where the native run of its packing
+        has come before.
+
+        A run made before, or without, its native counterpart lacks that gate.
+        """
+        wanted = self.case.run_hash
+        for dataset in datasets:
+            run = (dataset.engine, dataset.seed, dataset.twin)
+            found = Case.from_resolved(dataset.case).run_hash
+            if found != wanted:
+                self.faults.append(
+                    f"{run_name(run)}: run of another case ({found[:12]}; this one is {wanted[:12]})"
+                )
+            elif run in self.seen:
+                self.faults.append(f"{run_name(run)}: given more than once")
+            else:
+                self.seen |= {run}
+                yield self._entered(dataset)
+
+    def pictured(self, order: dict[str, int]) -> tuple[Dataset, ...]:
+        """Twin 0 of each packing, engines in this order."""
+        return tuple(sorted(self._kept, key=lambda run: (order[run.engine], run.seed)))
+
+    def _entered(self, dataset: Dataset) -> Dataset:
+        packing = dataset.manifest["packing_hash"]
+        if dataset.engine == REFERENCE:
+            self._contacts[packing] = contacts_at_rest(dataset)
+        if packing in self._contacts:
+            dataset = with_contacts_gate(dataset, self._contacts[packing])
+        if dataset.twin == 0:
+            self._kept.append(dataset)
+        return dataset
+
+
+def native_first(folders: Iterable[Path]) -> list[Path]:
+    """Run folders in an order in which they can be taken in."""
+    return sorted(folders, key=lambda folder: _engine(folder) != REFERENCE)
+
+
+def _engine(folder: Path) -> str | None:
+    """None for a folder that is no run: reading it will say so."""
+    try:
+        return json.loads((folder / "manifest.json").read_text(encoding="utf-8"))["engine"]
+    except (OSError, ValueError, LookupError, TypeError):
+        return None
+
+
+def run_name(run: tuple[str, int, int]) -> str:
+    engine, seed, twin = run
+    return f"{engine}, seed {seed}" + (f", twin {twin}" if twin else "")
+
+
+def failed_gates(manifests: Manifests, engines: Iterable[str]) -> list[str]:
+    """A line for each gate that a run of these engines did not pass, in whichever twin."""
+    return [
+        f"{run_name(run)}: {gate['message']}"
+        for run, manifest in manifests.items()
+        if run[0] in engines
+        for gate in manifest["gates"]
+        if not gate["passed"]
+    ]
+
+
+def missing_runs(pair: tuple[str, str], failures: dict[tuple[str, int], str]) -> list[str]:
+    """A line for each packing that an engine of the pair has no result on: to leave out what failed would flatter it.
+
+    A packing that an engine was never asked to run is no such thing: the pair is compared on those that both have.
+    """
+    return [
+        f"{engine}, seed {seed}: {why}"
+        for (engine, seed), why in failures.items()
+        if engine in pair
+    ]
+
+
+def other_packings(pair: tuple[str, str], manifests: Manifests) -> list[str]:
+    """A line for each packing that is not the same for both engines."""
+    first, second = pair
+    packing = {run: manifest["packing_hash"] for run, manifest in manifests.items()}
+    return [
+        f"{run_name(run).removeprefix(f'{first}, ')}: {first} and {second} did not start from the same packing"
+        for run, own in packing.items()
+        if run[0] == first and packing.get((second, *run[1:]), own) != own
+    ]

@@ -1,0 +1,184 @@
+"""`crossdem record`: runs a case and variants of it, and keeps of the runs what a judge reads."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shlex
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+
+from rich.console import Console
+
+from crossdem import ExitCode, __version__
+from crossdem.adapters.case import Case
+from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.gates import REFERENCE, contacts_at_rest
+from crossdem.adapters.packing import Packing
+from crossdem.adapters.solver import SolverError, find_solver
+from crossdem.adapters.workspace import Workspace
+
+from .ensemble import RUN, Ensemble
+from .fingerprint import content_sha256, machine_facts
+from .record import libraries
+from .recorded import CONTACTS, CONTENT, DATE, Record
+from .recorded_tables import FIELD_DIGITS
+from .runs import Runs, run_engines
+
+DEFAULT = "default"  # names the case as its file has it
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What to run of one variant of a case."""
+
+    overrides: tuple[str, ...]
+    engines: tuple[str, ...]
+    seeds: int
+    twins: int  # of each packing, beside itself
+    native_twins: int
+
+    @property
+    def name(self) -> str:
+        """Of the variant's folder."""
+        return ",".join(self.overrides) or DEFAULT
+
+
+def plans_of(
+    variants: Sequence[str],
+    engines: Sequence[str],
+    seeds: int,
+    twins: int,
+    native_twins: int | None,
+    variant_engines: Sequence[str],
+    variant_seeds: int | None,
+) -> list[Plan]:
+    """Of the case as it stands, then of each of its `variants`."""
+    more = native_twins if native_twins is not None else twins
+    plans = [Plan((), tuple(engines), seeds, twins, max(more, twins))]
+    for variant in variants:
+        overrides = tuple(part.strip() for part in variant.split(","))
+        plans.append(Plan(overrides, tuple(variant_engines), variant_seeds or seeds, twins, twins))
+    return plans
+
+
+def record_case(
+    case_file: Path,
+    plans: Sequence[tuple[Plan, Case]],
+    folder: Path,
+    workspace: Workspace,
+    jobs: int | None,
+    profile: str | None,
+    console: Console,
+) -> None:
+    """Run or reuse all that the `plans` ask of their variants of a case, and write a record of each into `folder`.
+
+    Raises SolverError when a run has no result: what was recorded until then stays.
+    """
+    for plan, case in plans:
+        folders: dict[Path, None] = {}
+        for engines, twins in _batches(plan):
+            runs = run_engines(case, engines, plan.seeds, workspace, jobs, console, twins, profile)
+            _refuse_failures(runs)
+            folders |= dict.fromkeys(runs.folders)
+        home = folder / case.name / plan.name
+        record_of(case, list(folders), plan, _command(case_file, plans, folder)).write(home)
+        size = sum(path.stat().st_size for path in home.iterdir())
+        console.print(f"{home}: {len(folders)} runs, {size / 1e6:.1f} MB", soft_wrap=True)
+
+
+def record_of(case: Case, folders: Sequence[Path], plan: Plan, command: str) -> Record:
+    """The record of the finished runs in `folders`, which are of this case."""
+    facts: dict[tuple[str, int, int], dict] = {}
+    packings: dict[int, Packing] = {}
+
+    def read() -> Iterator[Dataset]:
+        for folder in folders:
+            dataset = Dataset.read(folder)
+            facts[dataset.engine, dataset.seed, dataset.twin] = {
+                CONTENT: content_sha256(dataset),
+                CONTACTS: contacts_at_rest(dataset),
+            }
+            if dataset.twin == 0:
+                packings[dataset.seed] = Packing.read(folder / "inputs")
+            yield dataset
+
+    ensemble = Ensemble.of(read())
+    manifests = {run: manifest | facts[run] for run, manifest in ensemble.manifests.items()}
+    in_order = sorted(manifests, key=lambda run: (ensemble.engines.index(run[0]), *run[1:]))
+    ensemble = Ensemble(ensemble.endpoints, ensemble.profiles, ensemble.fields, manifests).selected(
+        in_order
+    )
+    return Record(
+        case=case,
+        ensemble=ensemble,
+        packings={
+            seed: (packing.folder / "packing.csv").read_text(encoding="utf-8")
+            for seed, packing in sorted(packings.items())
+        },
+        about_packings={
+            seed: json.loads((packing.folder / "packing.json").read_bytes())
+            for seed, packing in sorted(packings.items())
+        },
+        about=_manifest(case, ensemble, plan, command),
+    )
+
+
+def _command(case_file: Path, plans: Sequence[tuple[Plan, Case]], folder: Path) -> str:
+    """What makes these records again; where runs go and how many at a time is left to who types it."""
+    first, *others = [plan for plan, _ in plans]
+    words = ["crossdem", "record", str(case_file), "--engines", ",".join(first.engines)]
+    words += ["--seeds", str(first.seeds), "--twins", str(first.twins)]
+    words += ["--native-twins", str(first.native_twins)]
+    for plan in others:
+        words += ["--variant", plan.name]
+    if others:
+        words += ["--variant-engines", ",".join(others[0].engines)]
+        words += ["--variant-seeds", str(others[0].seeds)]
+    return shlex.join([*words, "--record", str(folder)])
+
+
+def _batches(plan: Plan) -> list[tuple[list[str], int]]:
+    """Engines, and the twins they run: all together, as the gates need a native run beside each; then native alone."""
+    batches = [(list(plan.engines), plan.twins)]
+    if REFERENCE in plan.engines and plan.native_twins > plan.twins:
+        batches.append(([REFERENCE], plan.native_twins))
+    return batches
+
+
+def _refuse_failures(runs: Runs) -> None:
+    if runs.failures:
+        lines = (f"{engine}, seed {seed}: {why}" for (engine, seed), why in runs.failures.items())
+        raise SolverError("\n".join(["not recorded, as runs are missing:", *lines]))
+
+
+def _manifest(case: Case, ensemble: Ensemble, plan: Plan, command: str) -> dict:
+    return {
+        "schema_version": 1,
+        "case": {
+            "name": case.name,
+            "title": case.resolved["title"],
+            "run_hash": case.run_hash,
+            "changes": list(plan.overrides),
+        },
+        DATE: datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "command": command,
+        "crossdem": __version__,
+        "solver_sha256": hashlib.sha256(find_solver().read_bytes()).hexdigest(),
+        "engines": {engine: _engine(ensemble, engine) for engine in ensemble.engines},
+        "machine": machine_facts(),  # of the machine that wrote this; runs carry none
+        "rounding": f"fields.csv.gz to 1e-{FIELD_DIGITS} m; every other number reads back the same",
+        "libraries": libraries(),
+    }
+
+
+def _engine(ensemble: Ensemble, engine: str) -> dict:
+    runs = {run: facts for run, facts in ensemble.manifests.items() if run[0] == engine}
+    return {
+        "versions": sorted({facts["engine_version"] for facts in runs.values()}),
+        "runs": len(runs),
+        "seeds": len({seed for _, seed, _ in runs}),
+        "twins": max(twin for _, _, twin in runs),
+    }

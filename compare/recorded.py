@@ -1,0 +1,176 @@
+"""The recorded ensemble: what the judge reads of finished runs, small enough to stand beside the case.
+
+A folder of plain files with SHA256SUMS, which `sha256sum -c` reads. Runs on its packings made elsewhere are compared with
+it by the judge as if all had been made here.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from crossdem.adapters.case import Case, CaseError
+from crossdem.adapters.packing import Packing, PackingError
+from crossdem.adapters.workspace import WorkspaceError
+
+from . import recorded_tables as tables
+from .ensemble import Ensemble
+from .pages import write_whole
+
+SUMS = "SHA256SUMS"
+CONTENT = "content_sha256"  # of a run's manifest as recorded: fingerprint.content_sha256
+CONTACTS = "contacts_at_rest"  # of a run's manifest as recorded: pairs of particles
+DATE = "recorded_utc"  # of a run's manifest as read, from the record's own
+
+
+class RecordError(CaseError):
+    """A folder that holds no usable record, or none of this case."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """Runs of one case. The ensemble's manifests hold CONTENT and CONTACTS beside what a run's manifest holds."""
+
+    case: Case
+    ensemble: Ensemble
+    packings: Mapping[int, str]  # packing.csv by seed
+    about_packings: Mapping[int, dict]  # packing.json by seed
+    about: dict  # manifest.json: what, when, with what
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        return tuple(sorted(self.packings))
+
+    def write(self, folder: Path) -> None:
+        """Into `folder`, in place of what was there: whole or not at all."""
+        partial = folder.with_name(f".{folder.name}.partial")
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir(parents=True)
+        contents = self._contents()
+        for name, content in contents.items():
+            write_whole(partial / name, content)
+        sums = (f"{_sha256(content)}  {name}\n" for name, content in sorted(contents.items()))
+        write_whole(partial / SUMS, "".join(sums).encode())
+        shutil.rmtree(folder, ignore_errors=True)
+        partial.rename(folder)
+
+    @classmethod
+    def read(cls, folder: Path) -> Record:
+        """Raises RecordError when a file was changed, is missing, or was added."""
+        contents = _verified(Path(folder))
+        try:
+            values = {name: _READERS[name](contents[name]) for name in _READERS}
+        except (KeyError, ValueError, OSError) as error:
+            raise RecordError([f"{folder}: holds no recorded ensemble: {error}"]) from error
+        about, manifests = values["manifest.json"], values["runs.json"]
+        manifests = {run: facts | {DATE: about[DATE]} for run, facts in manifests.items()}
+        about_packings = {int(seed): entry for seed, entry in values["packings.json"].items()}
+        ensemble = Ensemble(
+            values["endpoints.csv"], values["profiles.csv.gz"], values["fields.csv.gz"], manifests
+        )
+        return cls(values["case.json"], ensemble, values["packings.csv.gz"], about_packings, about)
+
+    def restore(self, seed: int, folder: Path) -> Packing:
+        """The packing of `seed`, made in `folder` unless it is there already. Raises WorkspaceError for another one there."""
+        text = self.packings[seed]
+        try:
+            there = Packing.read(folder)
+        except PackingError:
+            shutil.rmtree(folder, ignore_errors=True)
+        else:
+            if there.hash != _sha256(text.encode()):
+                raise WorkspaceError(
+                    f"{folder}: another packing than the recorded one of seed {seed}; choose another folder with --out"
+                )
+            return there
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = folder.with_name(f".{folder.name}.partial")
+        shutil.rmtree(unfinished, ignore_errors=True)
+        unfinished.mkdir()
+        (unfinished / "packing.csv").write_bytes(text.encode())
+        about = json.dumps(self.about_packings[seed])
+        (unfinished / "packing.json").write_text(about + "\n", encoding="utf-8")
+        unfinished.rename(folder)
+        return Packing.read(folder)
+
+    def _contents(self) -> dict[str, bytes]:
+        about = {DATE: self.about[DATE]} | self.about
+        manifests = {
+            run: {key: value for key, value in facts.items() if key != DATE}
+            for run, facts in self.ensemble.manifests.items()
+        }
+        return {
+            "manifest.json": _json(about),
+            "case.json": self.case.canonical + b"\n",
+            "packings.csv.gz": tables.compressed(tables.packings_text(dict(self.packings))),
+            "packings.json": _json(dict(self.about_packings)),
+            "runs.json": tables.runs_text(manifests).encode(),
+            "endpoints.csv": tables.endpoints_text(self.ensemble.endpoints).encode(),
+            "profiles.csv.gz": tables.compressed(tables.profiles_text(self.ensemble.profiles)),
+            "fields.csv.gz": tables.compressed(tables.fields_text(self.ensemble.fields)),
+        }
+
+
+_READERS: dict[str, Callable[[bytes], Any]] = {
+    "manifest.json": json.loads,
+    "case.json": lambda content: Case.from_canonical(content.rstrip(b"\n")),
+    "packings.csv.gz": lambda content: tables.packings_of(tables.expanded(content)),
+    "packings.json": json.loads,
+    "runs.json": lambda content: tables.runs_of(content.decode()),
+    "endpoints.csv": lambda content: tables.endpoints_of(content.decode()),
+    "profiles.csv.gz": lambda content: tables.profiles_of(tables.expanded(content)),
+    "fields.csv.gz": lambda content: tables.fields_of(tables.expanded(content)),
+}
+
+
+def find_record(case: Case, folder: Path) -> Record:
+    """The record of `case` among those that `folder` holds by case and variant. Raises RecordError."""
+    variants = sorted(path.parent for path in (folder / case.name).glob(f"*/{SUMS}"))
+    for variant in variants:
+        if _READERS["case.json"](_verified(variant)["case.json"]).run_hash == case.run_hash:
+            return Record.read(variant)
+    there = ", ".join(variant.name for variant in variants)
+    say = f"there are records of {there}" if there else f"there is no record of {case.name}"
+    raise RecordError(
+        [
+            f"no recorded ensemble of this case in {folder}: {say}, and runs depend on every value but title and "
+            "checks. Use a recorded case or variant (--set), or record this one with `crossdem record`"
+        ]
+    )
+
+
+def _verified(folder: Path) -> dict[str, bytes]:
+    """The files of `folder` that SUMS lists, each as it lists it, and no other."""
+    try:
+        lines = (folder / SUMS).read_text(encoding="utf-8").splitlines()
+        listed = dict(reversed(line.split("  ", 1)) for line in lines)
+        there = {path.name: path.read_bytes() for path in folder.iterdir() if path.name != SUMS}
+    except (OSError, ValueError) as error:
+        raise RecordError([f"{folder}: holds no recorded ensemble: {error}"]) from error
+    faults = [f"{name} is missing" for name in sorted(listed.keys() - there.keys())]
+    faults += [f"{name} was added" for name in sorted(there.keys() - listed.keys())]
+    faults += [
+        f"{name} was changed"
+        for name in sorted(there.keys() & listed.keys())
+        if _sha256(there[name]) != listed[name]
+    ]
+    if faults:
+        raise RecordError(
+            [
+                f"{folder}: not as it was recorded: {'; '.join(faults)}. `crossdem record` makes it anew"
+            ]
+        )
+    return there
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _json(value: dict) -> bytes:
+    return (json.dumps(value, indent=2, ensure_ascii=False) + "\n").encode()

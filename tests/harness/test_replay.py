@@ -1,0 +1,101 @@
+"""Replay: recorded runs take part in a comparison as if they had been made here, and it is said that they were not."""
+
+import json
+
+import pytest
+from recorded_runs import packing_hash, record
+from synthetic import REFERENCE_CASE, case, dataset
+
+from crossdem import ExitCode
+from crossdem.adapters.case import load_case
+from crossdem.adapters.workspace import Workspace
+from crossdem.compare.cli import main
+from crossdem.compare.comparison import compare_runs
+from crossdem.compare.recorded import Record, RecordError
+from crossdem.compare.replay import gated, replayed, restore_packings
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    return record(load_case(REFERENCE_CASE))
+
+
+@pytest.fixture(scope="module")
+def records(recorded, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("records")
+    recorded.write(folder / "bar_penetration" / "default")
+    return folder
+
+
+def replay(records, out, *options):
+    arguments = ["check", str(REFERENCE_CASE), "--replay", "--record", str(records)]
+    return main([*arguments, "--out", str(out), *options])
+
+
+def test_recorded_engines_are_compared_where_there_is_none(records, tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert replay(records, tmp_path / "out", "--engines", "none") != ExitCode.BAD_INPUT
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert {run["engine"] for run in report["runs"]} == {"native", "liggghts"}
+    assert report["checks"] and not (tmp_path / "out" / "runs").exists()
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "recorded 2026-01-02: liggghts 1.0" in page
+
+
+def test_the_engines_asked_for_are_not_taken_from_the_record(recorded):
+    assert replayed(recorded, ["native"], 2, 1).engines == ("liggghts",)
+    assert replayed(recorded, ["yade"], 2, 1).engines == ("native", "liggghts")
+
+
+def test_packings_and_twins_are_those_asked_for(recorded):
+    assert set(replayed(recorded, [], 1, 0).manifests) == {("native", 1, 0), ("liggghts", 1, 0)}
+
+
+def test_more_packings_than_recorded_are_refused_with_their_number(records, tmp_path, capsys):
+    assert replay(records, tmp_path / "out", "--seeds", "16") == ExitCode.BAD_INPUT
+    assert "2 packings, and not seed 3" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_one_recorded_engine_alone_is_no_comparison():
+    with pytest.raises(RecordError, match="only one engine is recorded"):
+        replayed(record(engines=("native",)), [], 2, 1)
+
+
+def test_a_case_of_other_runs_is_refused(records, tmp_path, capsys):
+    changed = ("--set", "gravity_m_s2=1.62")
+    assert replay(records, tmp_path / "out", *changed) == ExitCode.BAD_INPUT
+    assert "crossdem record" in capsys.readouterr().err
+
+
+def test_another_margin_needs_no_other_record(records, tmp_path):
+    changed = ("--set", "title=Mine", "--engines", "none")
+    assert replay(records, tmp_path / "out", *changed) != ExitCode.BAD_INPUT
+
+
+def test_runs_made_here_start_from_the_recorded_packings(recorded, tmp_path):
+    workspace = Workspace(tmp_path / "out")
+    restore_packings(recorded.case, recorded, 2, workspace)
+    for seed in (1, 2):
+        text = (workspace.packing_folder(recorded.case, seed) / "packing.csv").read_bytes()
+        assert text == recorded.packings[seed].encode()
+
+
+def test_a_recorded_native_run_sets_the_gate_on_contacts(recorded, tmp_path):
+    recorded.write(tmp_path / "record")
+    others = replayed(Record.read(tmp_path / "record"), ["liggghts"], 1, 0)
+    here = dataset(case(), "liggghts", packing_hash=packing_hash(1))
+    here.resistance["contacts"] = 1600  # of 1700 in the native run
+    (found,) = gated([here], others)
+    assert [
+        gate["passed"] for gate in found.manifest["gates"] if gate["name"] == "contacts_share"
+    ] == [False]
+
+
+def test_a_run_made_here_is_judged_against_recorded_ones(recorded):
+    others = replayed(recorded, ["native"], 2, 0)
+    here = [dataset(recorded.case, seed=seed, packing_hash=packing_hash(seed)) for seed in (1, 2)]
+    comparison = compare_runs(recorded.case, gated(here, others), recorded=others)
+    assert comparison.engines == ("native", "liggghts")
+    assert comparison.results and not any(result.obstacles for result in comparison.results)
+    assert comparison.recorded == {("liggghts", 1, 0), ("liggghts", 2, 0)}
