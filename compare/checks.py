@@ -181,8 +181,8 @@ def _packings_of(
     """(n,) seeds of the engine's packings and (n, checks) their values; n = 0 for an engine without runs."""
     rows = endpoints.index.get_level_values("engine") == engine
     seeds = endpoints.index.get_level_values("seed")[rows].to_numpy()
-    columns = [endpoints[check.quantity.name].to_numpy(dtype=float)[rows] for check in checks]
-    return seeds, np.column_stack(columns)
+    names = [check.quantity.name for check in checks]
+    return seeds, endpoints[names].to_numpy(dtype=float)[rows]
 
 
 def _mean(values: np.ndarray) -> float:

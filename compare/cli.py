@@ -299,6 +299,11 @@ def stability(**options):
 @cli.command()
 @_with(_case, _engines, *_ensemble)
 @click.option(
+    "--twin-seeds",
+    type=click.IntRange(1, 1000),
+    help="On how many of the packings the engines run the twins. [default: all]",
+)
+@click.option(
     "--native-twins",
     type=click.IntRange(0, 100),
     help="Twins of the native solver, where it is to have more of them than the others: calibrate deals with them. "

@@ -37,8 +37,9 @@ class Plan:
     overrides: tuple[str, ...]
     engines: tuple[str, ...]
     seeds: int
-    twins: int  # of each packing, beside itself
-    native_twins: int
+    twins: int  # of a packing, beside itself
+    twin_seeds: int  # of how many packings engines run the twins
+    native_twins: int  # of each packing
 
     @property
     def name(self) -> str:
@@ -51,16 +52,19 @@ def plans_of(
     engines: Sequence[str],
     seeds: int,
     twins: int,
+    twin_seeds: int | None,
     native_twins: int | None,
     variant_engines: Sequence[str],
     variant_seeds: int | None,
 ) -> list[Plan]:
     """Of the case as it stands, then of each of its `variants`."""
     more = native_twins if native_twins is not None else twins
-    plans = [Plan((), tuple(engines), seeds, twins, max(more, twins))]
+    twin_seeds = min(twin_seeds or seeds, seeds)
+    plans = [Plan((), tuple(engines), seeds, twins, twin_seeds, max(more, twins))]
     for variant in variants:
         overrides = tuple(part.strip() for part in variant.split(","))
-        plans.append(Plan(overrides, tuple(variant_engines), variant_seeds or seeds, twins, twins))
+        count = variant_seeds or seeds
+        plans.append(Plan(overrides, tuple(variant_engines), count, twins, count, twins))
     return plans
 
 
@@ -79,8 +83,8 @@ def record_case(
     """
     for plan, case in plans:
         folders: dict[Path, None] = {}
-        for engines, twins in _batches(plan):
-            runs = run_engines(case, engines, plan.seeds, workspace, jobs, console, twins, profile)
+        for engines, seeds, twins in _batches(plan):
+            runs = run_engines(case, engines, seeds, workspace, jobs, console, twins, profile)
             _refuse_failures(runs)
             folders |= dict.fromkeys(runs.folders)
         home = folder / case.name / plan.name
@@ -131,7 +135,7 @@ def _command(case_file: Path, plans: Sequence[tuple[Plan, Case]], folder: Path) 
     first, *others = [plan for plan, _ in plans]
     words = ["crossdem", "record", str(case_file), "--engines", ",".join(first.engines)]
     words += ["--seeds", str(first.seeds), "--twins", str(first.twins)]
-    words += ["--native-twins", str(first.native_twins)]
+    words += ["--twin-seeds", str(first.twin_seeds), "--native-twins", str(first.native_twins)]
     for plan in others:
         words += ["--variant", plan.name]
     if others:
@@ -140,11 +144,12 @@ def _command(case_file: Path, plans: Sequence[tuple[Plan, Case]], folder: Path) 
     return shlex.join([*words, "--record", str(folder)])
 
 
-def _batches(plan: Plan) -> list[tuple[list[str], int]]:
-    """Engines, and the twins they run: all together, as the gates need a native run beside each; then native alone."""
-    batches = [(list(plan.engines), plan.twins)]
-    if REFERENCE in plan.engines and plan.native_twins > plan.twins:
-        batches.append(([REFERENCE], plan.native_twins))
+def _batches(plan: Plan) -> list[tuple[list[str], int, int]]:
+    """Engines, and the packings and twins they run. Native runs all of them, as the gates need one beside each run."""
+    engines = list(plan.engines)
+    batches = [(engines, plan.twin_seeds, plan.twins), (engines, plan.seeds, 0)]
+    if REFERENCE in engines:
+        batches.append(([REFERENCE], plan.seeds, plan.native_twins))
     return batches
 
 

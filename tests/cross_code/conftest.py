@@ -18,7 +18,7 @@ def engine(request):
     return _require(request.param)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def required():
     """A function that ends the test unless this engine is here."""
     return _require

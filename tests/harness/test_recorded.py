@@ -167,6 +167,7 @@ def test_one_command_line_plans_the_case_and_its_variants():
         ["native", "yade"],
         32,
         2,
+        12,
         7,
         ["native"],
         16,
@@ -176,5 +177,6 @@ def test_one_command_line_plans_the_case_and_its_variants():
         "contact.particle_wall.friction=0",
         "a=1,b=2",
     ]
-    assert (plans[0].seeds, plans[0].twins, plans[0].native_twins) == (32, 2, 7)
+    assert (plans[0].seeds, plans[0].twins, plans[0].twin_seeds) == (32, 2, 12)
+    assert plans[0].native_twins == 7
     assert (plans[1].seeds, plans[1].engines, plans[1].native_twins) == (16, ("native",), 2)
