@@ -6,181 +6,18 @@ import traceback
 from pathlib import Path
 
 import click
-from click.core import ParameterSource
 
 from crossdem import ExitCode, __version__
 from crossdem.adapters.case import CaseError
 from crossdem.adapters.dataset import DatasetError
-from crossdem.adapters.engines import DEFAULT_ENGINES, ENGINES
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.solver import SolverError
-from crossdem.adapters.workflow.snakemake import WorkflowError, profile_folder
+from crossdem.adapters.workflow.snakemake import WorkflowError
 from crossdem.adapters.workspace import WorkspaceError
 
-from . import commands
+from . import commands, options
 from .ingredients import TARGETS
-from .runs import TIERS, WITHOUT_TIER, cores
 from .doctor import doctor as examine
-
-
-def _engine_names(context, parameter, text: str) -> list[str]:
-    if context.params.get("replay"):
-        if text.strip() == "none":
-            return []
-        if context.get_parameter_source(parameter.name) is ParameterSource.DEFAULT:
-            return [REFERENCE]
-    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
-    for name in names:
-        if name not in ENGINES:
-            raise click.BadParameter(f"no engine {name!r}; there are {', '.join(ENGINES)}")
-    return names
-
-
-def _time_steps(context, parameter, text: str) -> list[float]:
-    try:
-        steps = sorted({float(step) for step in text.split(",") if step.strip()})
-    except ValueError as error:
-        raise click.BadParameter(f"{text!r} is not a list of numbers such as 5e-5,1e-4") from error
-    if not all(0 < step < float("inf") for step in steps):
-        raise click.BadParameter("a time step is a number above 0")
-    return steps
-
-
-_case = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
-_overrides = click.option(
-    "--set",
-    "overrides",
-    metavar="KEY=VALUE",
-    multiple=True,
-    help="Change one value of the case, such as contact.particle_wall.friction=0.5. May be repeated.",
-)
-_engines = click.option(
-    "--engines",
-    default=",".join(DEFAULT_ENGINES),
-    show_default=True,
-    callback=_engine_names,
-    help="Which engines to run, separated by commas.",
-)
-
-
-def _seeds_of(default: int, help_text: str):
-    return click.option(
-        "--seeds",
-        type=click.IntRange(1, 1000),
-        default=default,
-        show_default=True,
-        help=help_text,
-    )
-
-
-def _of_tier(which: int):
-    """Packings (0) or twins (1), as they were asked for, else as the tier has them."""
-
-    def chosen(context, parameter, value: int | None) -> int:
-        return (
-            value if value is not None else TIERS.get(context.meta.get(_TIER), WITHOUT_TIER)[which]
-        )
-
-    return chosen
-
-
-def _profile_name(context, parameter, name: str | None) -> str | None:
-    if name:
-        try:
-            profile_folder(name)
-        except WorkflowError as error:
-            raise click.BadParameter(str(error)) from error
-    return name
-
-
-def _jobs_of(context, parameter, jobs: int | None) -> int | None:
-    return jobs or (None if context.params.get("profile") else cores())
-
-
-_seeds = _seeds_of(2, "How many packings; every engine runs each of them.")
-_TIER = "crossdem.tier"
-_tier = click.option(
-    "--tier",
-    type=click.Choice(list(TIERS)),
-    is_eager=True,
-    expose_value=False,
-    callback=lambda context, parameter, tier: context.meta.update({_TIER: tier}),
-    help="How large the ensemble is: "
-    + ", ".join(
-        f"{name} {seeds} packings with {twins} twins" for name, (seeds, twins) in TIERS.items()
-    )
-    + ". --seeds and --twins come first.",
-)
-_ensemble = [
-    _tier,
-    click.option(
-        "--seeds",
-        type=click.IntRange(1, 1000),
-        callback=_of_tier(0),
-        help="How many packings; every engine runs each of them. [default: 2]",
-    ),
-    click.option(
-        "--twins",
-        type=click.IntRange(0, 100),
-        callback=_of_tier(1),
-        help="How many twins of each packing beside itself, one particle moved by 1e-12 m. [default: 0]",
-    ),
-]
-_profile = click.option(
-    "--profile",
-    metavar="NAME",
-    is_eager=True,
-    callback=_profile_name,
-    help="Run on a cluster: slurm, or the folder of a Snakemake profile. [default: on the cores of this machine]",
-)
-_ranks = click.option(
-    "--mpi-ranks",
-    "ranks",
-    type=click.IntRange(1, 1024),
-    default=1,
-    show_default=True,
-    help="MPI processes per run of LIGGGHTS; the other engines take one.",
-)
-_out = click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Output folder. [default: results/NAME of the case, results/NAME-HASH with --set, "
-    "results/NAME-compare for compare]",
-)
-_jobs = click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    callback=_jobs_of,
-    help="How many processes at a time, or tasks handed in with --profile. [default: one per core, or the profile's]",
-)
-
-
-_replay = click.option(
-    "--replay",
-    is_flag=True,
-    is_eager=True,
-    help="Run only --engines (by default native; none: not one) here, on recorded packings, and take the runs of all "
-    "others from the record.",
-)
-_record = click.option(
-    "--record",
-    "-o",
-    type=click.Path(path_type=Path),
-    default=Path("reference_cases/expected"),
-    show_default=True,
-    help="The folder of recorded ensembles.",
-)
-
-
-def _with(*options):
-    """Adds these arguments and options to a command, in this order."""
-
-    def add(function):
-        for option in reversed(options):
-            function = option(function)
-        return function
-
-    return add
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -190,8 +27,19 @@ def cli():
 
 
 @cli.command()
-@_with(_case, _replay, _engines, *_ensemble, _out, _overrides, _jobs, _profile, _ranks, _record)
-def check(**options):
+@options.taking(
+    options.case,
+    options.replay,
+    options.engines,
+    *options.ensemble,
+    options.out,
+    options.overrides,
+    options.jobs,
+    options.profile,
+    options.ranks,
+    options.record,
+)
+def check(**arguments):
     """Run CASE in every engine, compare, and end with a verdict and a report.
 
     On the packing of seed 1 each engine is also compared particle by particle with the native scheme of its name, up to
@@ -200,42 +48,53 @@ def check(**options):
     A folder of cases is a ladder: each engine against its native twin and against closed forms, at three time steps.
     Its particles are given, so that it needs no seeds.
     """
-    return commands.check(**options)
+    return commands.check(**arguments)
 
 
 @cli.command()
-@_with(_case, _engines, *_ensemble, _out, _overrides, _jobs, _profile, _ranks)
-def run(**options):
+@options.taking(
+    options.case,
+    options.engines,
+    *options.ensemble,
+    options.out,
+    options.overrides,
+    options.jobs,
+    options.profile,
+    options.ranks,
+)
+def run(**arguments):
     """Run CASE in every engine, without comparing."""
-    return commands.run(**options)
+    return commands.run(**arguments)
 
 
 @cli.command()
-@_with(_case, _engines, _seeds, _out, _overrides, _jobs)
-def generate(**options):
+@options.taking(
+    options.case, options.engines, options.seeds, options.out, options.overrides, options.jobs
+)
+def generate(**arguments):
     """Only write the engines' input for CASE, to run it elsewhere."""
-    return commands.generate(**options)
+    return commands.generate(**arguments)
 
 
 @cli.command()
-@_with(_case, _overrides)
-def resolve(**options):
+@options.taking(options.case, options.overrides)
+def resolve(**arguments):
     """Validate CASE and print all of it, defaults included, as JSON."""
-    return commands.resolve(**options)
+    return commands.resolve(**arguments)
 
 
 @cli.command()
 @click.argument(
     "folders", metavar="DATASET...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@_out
-def compare(**options):
+@options.out
+def compare(**arguments):
     """Compare runs that exist: folders such as results/bar_penetration/runs/*."""
-    return commands.compare(**options)
+    return commands.compare(**arguments)
 
 
 @cli.command()
-@_case
+@options.case
 @click.option(
     "--from",
     "origin",
@@ -251,53 +110,53 @@ def compare(**options):
     required=True,
     help="Whose scheme it leads to; the last step is that code itself.",
 )
-@_seeds_of(16, "How many packings; every step of the walk runs all of them.")
+@options.seeds_of(16, "How many packings; every step of the walk runs all of them.")
 @click.option(
     "--engine-seeds",
     type=click.IntRange(1, 1000),
     help="On how many of them the other code itself runs. [default: all]",
 )
-@_with(_out, _overrides, _jobs, _profile)
-def explain(**options):
+@options.taking(options.out, options.overrides, options.jobs, options.profile)
+def explain(**arguments):
     """Walk from the paper's scheme to another code, and say what each ingredient changes.
 
     Ends with 3 when a run of the paper's scheme, of the native scheme or of the code itself failed, 4 without a total.
     """
-    return commands.explain(**options)
+    return commands.explain(**arguments)
 
 
 @cli.command()
-@_with(_case, _engines)
+@options.taking(options.case, options.engines)
 @click.option(
     "--seed", type=click.IntRange(1, 1000), default=1, show_default=True, help="Of the packing."
 )
-@_with(_out, _overrides, _jobs)
-def horizon(**options):
+@options.taking(options.out, options.overrides, options.jobs)
+def horizon(**arguments):
     """Say up to when CASE can be compared particle by particle: how fast twin runs of each engine part.
 
     Ends with 0 when every engine does until then what the native scheme of its name does (or the native solver was all
     that was asked for), 1 when one does not, 3 when a run has no result, 4 when an engine could not be compared.
     """
-    return commands.horizon(**options)
+    return commands.horizon(**arguments)
 
 
 @cli.command()
-@_with(_case, _seeds_of(1, "How many packings."))
+@options.taking(options.case, options.seeds_of(1, "How many packings."))
 @click.option(
     "--time-steps",
     "steps_s",
     default="",
-    callback=_time_steps,
+    callback=options.time_steps,
     help="Time steps in s, separated by commas. [default: about the bounds]",
 )
-@_with(_out, _overrides, _jobs)
-def stability(**options):
+@options.taking(options.out, options.overrides, options.jobs)
+def stability(**arguments):
     """Say at which time steps the bed of CASE rests, under each native scheme."""
-    return commands.stability(**options)
+    return commands.stability(**arguments)
 
 
 @cli.command()
-@_with(_case, _engines, *_ensemble)
+@options.taking(options.case, options.engines, *options.ensemble)
 @click.option(
     "--twin-seeds",
     type=click.IntRange(1, 1000),
@@ -320,7 +179,7 @@ def stability(**options):
     "--variant-engines",
     default=REFERENCE,
     show_default=True,
-    callback=_engine_names,
+    callback=options.engine_names,
     help="Which engines run the variants.",
 )
 @click.option(
@@ -328,14 +187,14 @@ def stability(**options):
     type=click.IntRange(1, 1000),
     help="How many packings of each variant. [default: as --seeds]",
 )
-@_with(_record, _out, _jobs, _profile)
-def record(**options):
+@options.taking(options.record, options.out, options.jobs, options.profile)
+def record(**arguments):
     """Run CASE, and keep of the runs what a comparison reads: few enough numbers to stand beside the case.
 
     `check --replay` compares with them, `calibrate` judges the judge on them. What is recorded of each variant goes to
     a folder of its own, NAME of the case/VARIANT; what was recorded there before is replaced.
     """
-    return commands.record(**options)
+    return commands.record(**arguments)
 
 
 @cli.command()
@@ -352,13 +211,13 @@ def record(**options):
     show_default=True,
     help="Random splits of the recorded native runs, for each size of a comparison.",
 )
-@_with(_record, _out, _overrides, _jobs)
-def calibrate(**options):
+@options.taking(options.record, options.out, options.overrides, options.jobs)
+def calibrate(**arguments):
     """Judge the judge: how often it errs about recorded native runs, of which the truth is known.
 
     Ends with 0 when its error rates are as low as they are to be, 1 when not, 4 when there are too few recorded runs.
     """
-    return commands.calibrate(**options)
+    return commands.calibrate(**arguments)
 
 
 @cli.command()

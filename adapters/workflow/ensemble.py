@@ -84,7 +84,7 @@ def _work(
         for run in runs
     ]
     call = _new_call(folder)
-    write_plan(grouped(planned, jobs or len(planned)), folder / JOURNAL, call)
+    write_plan(grouped(planned, jobs or 1), folder / JOURNAL, call)
     snakemake = Snakemake(call, jobs, profile)
     try:
         ending = _wait(snakemake, Watch(planned, call), on_progress)

@@ -37,7 +37,8 @@ class Snakemake:
         self.log = call / LOG
         self._grace_s = GRACE_ON_CLUSTER_S if profile else GRACE_S
         command = [
-            *(sys.executable, "-m", f"{__package__}.scheduler"),
+            # -P: a user's file of the name of a module, in the folder of the call, is none.
+            *(sys.executable, "-P", "-m", f"{__package__}.scheduler"),
             *("--snakefile", str(HERE / "Snakefile"), "--directory", str(call.absolute())),
             *("--keep-going", "--retries", "1", "--rerun-triggers", "mtime", "--nocolor"),
             *(_on_cluster(profile, jobs) if profile else _on_cores(jobs)),

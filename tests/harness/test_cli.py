@@ -198,6 +198,13 @@ def test_an_interrupted_run_ends_at_once_and_leaves_nothing_that_looks_complete(
     assert not list(out.glob("runs/[!.]*"))
 
 
+def test_files_of_the_user_are_not_taken_for_modules_of_the_same_name(tmp_path):
+    for name in ("snakemake.py", "pandas.py", "crossdem.py"):
+        (tmp_path / name).write_text("raise SystemExit('taken for a module')")
+    ended = crossdem("run", *QUICK, "--seeds", "1", "--out", "out", cwd=tmp_path)
+    assert ended.returncode == ExitCode.AGREES, ended.stderr
+
+
 def test_two_at_a_time_do_not_share_an_output_folder(finished):
     with open(finished / "crossdem.json") as marker:
         fcntl.flock(marker, fcntl.LOCK_EX)

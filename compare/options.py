@@ -1,0 +1,173 @@
+"""Options and arguments that several commands take."""
+
+from pathlib import Path
+
+import click
+from click.core import ParameterSource
+
+from crossdem.adapters.engines import DEFAULT_ENGINES, ENGINES
+from crossdem.adapters.gates import REFERENCE
+from crossdem.adapters.workflow.snakemake import WorkflowError, profile_folder
+
+from .runs import TIERS, WITHOUT_TIER, cores
+
+RECORDS = Path(__file__).resolve().parent.parent / "reference_cases" / "expected"
+
+
+def engine_names(context, parameter, text: str) -> list[str]:
+    if context.params.get("replay"):
+        if text.strip() == "none":
+            return []
+        if context.get_parameter_source(parameter.name) is ParameterSource.DEFAULT:
+            return [REFERENCE]
+    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
+    for name in names:
+        if name not in ENGINES:
+            raise click.BadParameter(f"no engine {name!r}; there are {', '.join(ENGINES)}")
+    return names
+
+
+def time_steps(context, parameter, text: str) -> list[float]:
+    try:
+        steps = sorted({float(step) for step in text.split(",") if step.strip()})
+    except ValueError as error:
+        raise click.BadParameter(f"{text!r} is not a list of numbers such as 5e-5,1e-4") from error
+    if not all(0 < step < float("inf") for step in steps):
+        raise click.BadParameter("a time step is a number above 0")
+    return steps
+
+
+case = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
+overrides = click.option(
+    "--set",
+    "overrides",
+    metavar="KEY=VALUE",
+    multiple=True,
+    help="Change one value of the case, such as contact.particle_wall.friction=0.5. May be repeated.",
+)
+engines = click.option(
+    "--engines",
+    default=",".join(DEFAULT_ENGINES),
+    show_default=True,
+    callback=engine_names,
+    help="Which engines to run, separated by commas.",
+)
+
+
+def seeds_of(default: int, help_text: str):
+    return click.option(
+        "--seeds",
+        type=click.IntRange(1, 1000),
+        default=default,
+        show_default=True,
+        help=help_text,
+    )
+
+
+def _of_tier(which: int):
+    """Packings (0) or twins (1), as they were asked for, else as the tier has them."""
+
+    def chosen(context, parameter, value: int | None) -> int:
+        return (
+            value if value is not None else TIERS.get(context.meta.get(_TIER), WITHOUT_TIER)[which]
+        )
+
+    return chosen
+
+
+def _profile_name(context, parameter, name: str | None) -> str | None:
+    if name:
+        try:
+            profile_folder(name)
+        except WorkflowError as error:
+            raise click.BadParameter(str(error)) from error
+    return name
+
+
+def _jobs_of(context, parameter, jobs: int | None) -> int | None:
+    return jobs or (None if context.params.get("profile") else cores())
+
+
+seeds = seeds_of(2, "How many packings; every engine runs each of them.")
+_TIER = "crossdem.tier"
+_tier = click.option(
+    "--tier",
+    type=click.Choice(list(TIERS)),
+    is_eager=True,
+    expose_value=False,
+    callback=lambda context, parameter, tier: context.meta.update({_TIER: tier}),
+    help="How large the ensemble is: "
+    + ", ".join(
+        f"{name} {seeds} packings with {twins} twins" for name, (seeds, twins) in TIERS.items()
+    )
+    + ". --seeds and --twins come first.",
+)
+ensemble = [
+    _tier,
+    click.option(
+        "--seeds",
+        type=click.IntRange(1, 1000),
+        callback=_of_tier(0),
+        help="How many packings; every engine runs each of them. [default: 2]",
+    ),
+    click.option(
+        "--twins",
+        type=click.IntRange(0, 100),
+        callback=_of_tier(1),
+        help="How many twins of each packing beside itself, one particle moved by 1e-12 m. [default: 0]",
+    ),
+]
+profile = click.option(
+    "--profile",
+    metavar="NAME",
+    is_eager=True,
+    callback=_profile_name,
+    help="Run on a cluster: slurm, or the folder of a Snakemake profile. [default: on the cores of this machine]",
+)
+ranks = click.option(
+    "--mpi-ranks",
+    "ranks",
+    type=click.IntRange(1, 1024),
+    default=1,
+    show_default=True,
+    help="MPI processes per run of LIGGGHTS; the other engines take one.",
+)
+out = click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Output folder. [default: results/NAME of the case, results/NAME-HASH with --set, "
+    "results/NAME-compare for compare]",
+)
+jobs = click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    callback=_jobs_of,
+    help="How many processes at a time, or tasks handed in with --profile. [default: one per core, or the profile's]",
+)
+
+
+replay = click.option(
+    "--replay",
+    is_flag=True,
+    is_eager=True,
+    help="Run only --engines (by default native; none: not one) here, on recorded packings, and take the runs of all "
+    "others from the record.",
+)
+record = click.option(
+    "--record",
+    "-o",
+    type=click.Path(path_type=Path),
+    default=RECORDS,
+    help="The folder of recorded ensembles. [default: reference_cases/expected beside the program]",
+)
+
+
+def taking(*options):
+    """Adds these arguments and options to a command, in this order."""
+
+    def add(function):
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return add
