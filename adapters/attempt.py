@@ -42,12 +42,12 @@ class Attempt:
 
     def end(self, how: str, leaving: bool = False) -> None:
         """Write the last line of the journal: published, was there, failed or stopped. Remove the rest unless `leaving` it."""
-        for folder in () if leaving else (self.work_dir, self.whole_dir):
-            shutil.rmtree(folder, ignore_errors=True)
         if self._open:
             self._open = False
             with suppress(OSError):  # a full disk
                 self._note("end", how=how)
+        for folder in () if leaving else (self.work_dir, self.whole_dir):
+            shutil.rmtree(folder, ignore_errors=True)
 
     def _note(self, event: str, **more: str) -> None:
         if not self._journal:

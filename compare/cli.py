@@ -185,7 +185,7 @@ def stability(**arguments):
 @click.option(
     "--variant-seeds",
     type=click.IntRange(1, 1000),
-    help="How many packings of each variant. [default: as --seeds]",
+    help="How many packings of each variant, which have no twins. [default: as --seeds]",
 )
 @options.taking(options.record, options.out, options.jobs, options.profile)
 def record(**arguments):

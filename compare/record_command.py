@@ -57,14 +57,14 @@ def plans_of(
     variant_engines: Sequence[str],
     variant_seeds: int | None,
 ) -> list[Plan]:
-    """Of the case as it stands, then of each of its `variants`."""
+    """Of the case as it stands, then of each of its `variants`, on packings without twins."""
     more = native_twins if native_twins is not None else twins
     twin_seeds = min(twin_seeds or seeds, seeds)
     plans = [Plan((), tuple(engines), seeds, twins, twin_seeds, max(more, twins))]
     for variant in variants:
         overrides = tuple(part.strip() for part in variant.split(","))
         count = variant_seeds or seeds
-        plans.append(Plan(overrides, tuple(variant_engines), count, twins, count, twins))
+        plans.append(Plan(overrides, tuple(variant_engines), count, 0, count, 0))
     return plans
 
 

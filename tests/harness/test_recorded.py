@@ -179,4 +179,4 @@ def test_one_command_line_plans_the_case_and_its_variants():
     ]
     assert (plans[0].seeds, plans[0].twins, plans[0].twin_seeds) == (32, 2, 12)
     assert plans[0].native_twins == 7
-    assert (plans[1].seeds, plans[1].engines, plans[1].native_twins) == (16, ("native",), 2)
+    assert (plans[1].seeds, plans[1].engines, plans[1].native_twins) == (16, ("native",), 0)

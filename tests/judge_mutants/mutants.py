@@ -51,7 +51,7 @@ MUTANTS = [
             "seeds, *rows = np.intersect1d(*(seeds for seeds, _ in runs), return_indices=True)",
             "seeds = np.intersect1d(*(seeds for seeds, _ in runs)); rows = [np.arange(len(seeds))] * 2",
         ),
-        ("first_column_for_all", "[check.quantity.name].to", "[checks[0].quantity.name].to"),
+        ("first_column_for_all", "[check.quantity.name for", "[checks[0].quantity.name for"),
         (
             "first_margin_for_all",
             "[check.on_scale(check.margin) for",
