@@ -9,9 +9,8 @@ from crossdem.adapters.engines import DEFAULT_ENGINES, ENGINES
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.workflow.snakemake import WorkflowError, profile_folder
 
+from .recorded import RECORDS
 from .runs import TIERS, WITHOUT_TIER, cores
-
-RECORDS = Path(__file__).resolve().parent.parent / "reference_cases" / "expected"
 
 
 def engine_names(context, parameter, text: str) -> list[str]:

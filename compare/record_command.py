@@ -23,7 +23,7 @@ from crossdem.adapters.workspace import Workspace
 from .ensemble import RUN, Ensemble
 from .fingerprint import content_sha256, machine_facts
 from .record import libraries
-from .recorded import CONTACTS, CONTENT, DATE, Record
+from .recorded import CONTACTS, CONTENT, DATE, RECORDS, Record
 from .recorded_tables import FIELD_DIGITS
 from .runs import Runs, run_engines
 
@@ -84,7 +84,7 @@ def record_case(
     for plan, case in plans:
         folders: dict[Path, None] = {}
         for engines, seeds, twins in _batches(plan):
-            runs = run_engines(case, engines, seeds, workspace, jobs, console, twins, profile)
+            runs = run_engines(case, list(engines), seeds, workspace, jobs, console, twins, profile)
             _refuse_failures(runs)
             folders |= dict.fromkeys(runs.folders)
         home = folder / case.name / plan.name
@@ -141,16 +141,15 @@ def _command(case_file: Path, plans: Sequence[tuple[Plan, Case]], folder: Path) 
     if others:
         words += ["--variant-engines", ",".join(others[0].engines)]
         words += ["--variant-seeds", str(others[0].seeds)]
-    return shlex.join([*words, "--record", str(folder)])
+    return shlex.join(words if folder == RECORDS else [*words, "--record", str(folder)])
 
 
-def _batches(plan: Plan) -> list[tuple[list[str], int, int]]:
+def _batches(plan: Plan) -> list[tuple[tuple[str, ...], int, int]]:
     """Engines, and the packings and twins they run. Native runs all of them, as the gates need one beside each run."""
-    engines = list(plan.engines)
-    batches = [(engines, plan.twin_seeds, plan.twins), (engines, plan.seeds, 0)]
-    if REFERENCE in engines:
-        batches.append(([REFERENCE], plan.seeds, plan.native_twins))
-    return batches
+    batches = [(plan.engines, plan.twin_seeds, plan.twins), (plan.engines, plan.seeds, 0)]
+    if REFERENCE in plan.engines:
+        batches.append(((REFERENCE,), plan.seeds, plan.native_twins))
+    return list(dict.fromkeys(batches))
 
 
 def _refuse_failures(runs: Runs) -> None:

@@ -22,6 +22,7 @@ from . import recorded_tables as tables
 from .ensemble import Ensemble
 from .pages import write_whole
 
+RECORDS = Path(__file__).resolve().parent.parent / "reference_cases" / "expected"
 SUMS = "SHA256SUMS"
 CONTENT = "content_sha256"  # of a run's manifest as recorded: fingerprint.content_sha256
 CONTACTS = "contacts_at_rest"  # of a run's manifest as recorded: pairs of particles
