@@ -11,7 +11,7 @@ from command_line import ROOT
 from crossdem import ExitCode
 from crossdem.adapters.engine import EngineNotFound
 from crossdem.adapters.engines import DEFAULT_ENGINES, ENGINES, get_engine
-from crossdem.compare import commands
+from crossdem.compare.ladder_command import check_ladder
 from crossdem.compare.rungs import CLOSED_FORM, TWIN
 
 MICRO = ROOT / "reference_cases" / "micro"
@@ -19,7 +19,7 @@ JOBS = len(os.sched_getaffinity(0))
 
 
 def check(folder, engines, out, overrides=()):
-    ended = commands.check(folder, engines, 2, out, list(overrides), JOBS)
+    ended = check_ladder(folder, engines, out, list(overrides), JOBS)
     return ended, json.loads((out / "ladder.json").read_text())
 
 
