@@ -107,11 +107,11 @@ def needed(seeds: int | None) -> str:
 
 
 def packings(seeds: int, runs_each: Sequence[int] = (1,)) -> str:
-    """ "16 packings × 3 twins": the packings behind a statement, and how many runs each of them has."""
+    """ "16 packings × 3 runs": the packings behind a statement, and how many runs each of them has."""
     fewest, most = min(runs_each, default=1), max(runs_each, default=1)
     each = str(most) if fewest == most else f"{fewest} to {most}"
-    twins = "" if most == 1 else f" \N{MULTIPLICATION SIGN} {each} twins"
-    return plural(seeds, "packing") + twins
+    runs = "" if most == 1 else f" \N{MULTIPLICATION SIGN} {each} runs"
+    return plural(seeds, "packing") + runs
 
 
 def probability(p: float) -> str:

@@ -102,7 +102,7 @@ def test_engines_that_are_only_recorded_are_in_every_table_and_in_no_picture_of_
     html, markdown = written(comparison, tmp_path)
     assert "recorded: yade 1.0" in html and "yade against native" in markdown
     assert html.count('<svg class="bed"') == 4 and "How much is chaos" in html
-    assert "5 packings × 2 twins" in Page(html).text
+    assert "5 packings × 2 runs" in Page(html).text
     runs = json.loads((tmp_path / "report.json").read_text())["runs"]
     assert [run["recorded"] for run in runs] == [False] * 10 + [True] * 10
     alone = compare_runs(run_case, [], recorded=recorded)

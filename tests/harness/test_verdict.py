@@ -178,7 +178,7 @@ def test_runs_are_of_this_case_whatever_margin_they_were_made_under():
 def test_twins_are_averaged_and_a_packing_counts_once():
     comparison = compare_runs(RUN_CASE, twins(3))
     assert comparison.verdict.word == verdict.AGREES
-    assert "from 5 packings \N{MULTIPLICATION SIGN} 3 twins" in comparison.verdict.sentence
+    assert "from 5 packings \N{MULTIPLICATION SIGN} 3 runs" in comparison.verdict.sentence
     assert comparison.results[0].seeds == (1, 2, 3, 4, 5)
     assert len(comparison.ensemble.manifests) == 30 and len(comparison.endpoints) == 10
     assert {run.twin for run in comparison.datasets} == {0} and len(comparison.datasets) == 10
