@@ -1,14 +1,18 @@
-"""Small files that others read while they are written."""
+"""Files that are there whole or not at all."""
 
 import os
 from pathlib import Path
 
 
-def replace_text(path: Path, text: str) -> None:
-    """Write the file whole or not at all, also when two write it at once."""
+def write_whole(path: Path, content: bytes) -> None:
+    """Replace `path` by `content`, whole or not at all, also when two write it at once. Raises OSError, leaving nothing."""
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    with open(partial, "w", encoding="utf-8") as file:
-        file.write(text)
-        file.flush()
-        os.fsync(file.fileno())
-    os.rename(partial, path)
+    try:
+        with open(partial, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        os.rename(partial, path)
+    except OSError:
+        partial.unlink(missing_ok=True)
+        raise

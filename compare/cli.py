@@ -27,18 +27,7 @@ def cli():
 
 
 @cli.command()
-@options.taking(
-    options.case,
-    options.replay,
-    options.engines,
-    *options.ensemble,
-    options.out,
-    options.overrides,
-    options.jobs,
-    options.profile,
-    options.ranks,
-    options.record,
-)
+@options.taking(options.case, options.replay, *options.running, options.record)
 def check(**arguments):
     """Run CASE in every engine, compare, and end with a verdict and a report.
 
@@ -52,16 +41,7 @@ def check(**arguments):
 
 
 @cli.command()
-@options.taking(
-    options.case,
-    options.engines,
-    *options.ensemble,
-    options.out,
-    options.overrides,
-    options.jobs,
-    options.profile,
-    options.ranks,
-)
+@options.taking(options.case, *options.running)
 def run(**arguments):
     """Run CASE in every engine, without comparing."""
     return commands.run(**arguments)

@@ -12,13 +12,14 @@ from rich.text import Text
 
 from crossdem import ExitCode
 from crossdem.adapters.case import Case
+from crossdem.adapters.files import write_whole
 
 from . import horizon_tables as tables
 from .colours import engine_styles
 from .drawing import png_figure, svg
 from .horizon import Horizon
 from .horizon_figure import draw_growth
-from .pages import render, write_record, write_whole
+from .pages import render, write_record
 from .record import libraries
 from .wording import printable
 

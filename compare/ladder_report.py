@@ -12,12 +12,14 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from crossdem.adapters.files import write_whole
+
 from . import ladder_tables as tables
 from . import rungs
 from .colours import engine_styles
 from .junit import suite, to_bytes
 from .ladder import Ladder
-from .pages import render, write_whole
+from .pages import render
 from .record import libraries, plain
 from .summary import COLOURS
 from .wording import plural, printable

@@ -160,6 +160,8 @@ record = click.option(
     help="The folder of recorded ensembles. [default: reference_cases/expected beside the program]",
 )
 
+running = [engines, *ensemble, out, overrides, jobs, profile, ranks]  # of an ensemble
+
 
 def taking(*options):
     """Adds these arguments and options to a command, in this order."""

@@ -1,9 +1,8 @@
-"""Pages from templates, and files that are there whole or not at all."""
+"""Pages from templates, and what is written beside them."""
 
 from __future__ import annotations
 
 import json
-import os
 import re
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import pandas as pd
 from markupsafe import Markup, escape
 
 from crossdem.adapters.case import Case
+from crossdem.adapters.files import write_whole
 
 from .record import libraries, plain
 from .wording import MINUS, printable
@@ -86,13 +86,3 @@ def write_record(case: Case, path: Path, record: dict) -> None:
     content = plain({"schema_version": 1, "case": about} | record)
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     write_whole(path, (text + "\n").encode())
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Replace `path` by `content`, whole or not at all."""
-    partial = path.with_name(f".{path.name}.partial")
-    with partial.open("wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    partial.replace(path)

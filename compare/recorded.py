@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import Any
 
 from crossdem.adapters.case import Case, CaseError
+from crossdem.adapters.files import write_whole
 from crossdem.adapters.packing import Packing, PackingError
 from crossdem.adapters.workspace import WorkspaceError
 
 from . import recorded_tables as tables
 from .ensemble import Ensemble
-from .pages import write_whole
 
 RECORDS = Path(__file__).resolve().parent.parent / "reference_cases" / "expected"
 SUMS = "SHA256SUMS"

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from crossdem.adapters.files import write_whole
+
 from . import (
     beds,
     chaos_tables,
@@ -23,7 +25,7 @@ from .checks import SEEDS_FOR_INTERVAL
 from .colours import engine_styles
 from .comparison import Comparison
 from .junit import junit_xml
-from .pages import render, write_whole
+from .pages import render
 from .record import libraries, record
 from .recorded import DATE
 

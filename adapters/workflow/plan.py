@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..case import Case
-from ..files import replace_text
+from ..files import write_whole
 from ..packing import Packing
 from ..run_folder import RunRequest
 
@@ -67,7 +67,7 @@ def write_plan(groups: Sequence[Group], journal: Path, folder: Path) -> None:
             for group in groups
         },
     }
-    replace_text(folder / PLAN, json.dumps(plan, indent=1))
+    write_whole(folder / PLAN, json.dumps(plan, indent=1).encode())
 
 
 def read_group(folder: Path, name: str) -> tuple[list[PlannedRun], Path]:

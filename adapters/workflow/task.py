@@ -9,7 +9,7 @@ import json
 import sys
 from pathlib import Path
 
-from ..files import replace_text
+from ..files import write_whole
 from ..run import RunResult, look_up, run_all
 from ..solver import BEYOND_REASON
 from .plan import DONE, STATUS, PlannedRun, read_group
@@ -24,7 +24,7 @@ def main(name: str) -> int:
     results = [_make(run, journal) for run in runs]
     report = {run.key: _report(result) for run, result in zip(runs, results)}
     (here / STATUS).mkdir(exist_ok=True)
-    replace_text(here / STATUS / f"{name}.json", json.dumps(report, indent=1))
+    write_whole(here / STATUS / f"{name}.json", json.dumps(report, indent=1).encode())
     if any(_is_worth_another_try(result) for result in results):
         return 1
     (here / DONE).mkdir(exist_ok=True)

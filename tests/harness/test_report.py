@@ -10,7 +10,8 @@ import pytest
 import synthetic
 from rich.console import Console
 
-from crossdem.compare import pages, quantities, report, summary
+from crossdem.adapters import files
+from crossdem.compare import quantities, report, summary
 from crossdem.compare.colours import engine_styles
 from crossdem.compare.comparison import compare_runs
 from crossdem.compare.ensemble import Ensemble
@@ -189,7 +190,7 @@ def test_a_report_that_cannot_be_finished_leaves_the_one_before(tmp_path, monkey
     def full(_):
         raise OSError("No space left on device")
 
-    monkeypatch.setattr(pages.os, "fsync", full)
+    monkeypatch.setattr(files.os, "fsync", full)
     with pytest.raises(OSError):
         report.write_report(compared("Another title"), tmp_path)
     assert (tmp_path / "report.html").read_text(encoding="utf-8") == before
