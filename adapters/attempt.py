@@ -98,12 +98,15 @@ def _may_be_alive(match: re.Match, folder: Path) -> bool:
 
 
 def _born(process_id: int) -> str | None:
-    """When the process was started, in clock ticks since the machine was; None: there is none."""
+    """When the process was started, in clock ticks since the machine was; None: there is none, or it has ended and only
+    its parent does not know yet.
+    """
     try:
         stat = Path(f"/proc/{process_id}/stat").read_text(encoding="utf-8", errors="replace")
     except OSError:
         return None
-    return stat.rpartition(")")[2].split()[19]
+    state, *fields = stat.rpartition(")")[2].split()
+    return None if state in "ZX" else fields[18]
 
 
 def _changed(folder: Path) -> float:

@@ -40,8 +40,7 @@ def check(
     if replay:
         return _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, record)
     with _workspace(case, overrides, out) as workspace:
-        runs = run_engines(case, engines, seeds, workspace, jobs, Console(), twins, profile, ranks)
-        found = horizon_of_runs(case, engines, runs.failures, workspace, jobs or cores(), Console())
+        runs, found = _run(case, engines, seeds, workspace, jobs, twins, profile, ranks)
     return _report(case, map(Dataset.read, runs.folders), runs, workspace, found)
 
 
@@ -52,14 +51,16 @@ def _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, f
     with _workspace(case, overrides, out, "-replay") as workspace:
         if engines:
             restore_packings(case, record, seeds, workspace)
-            runs = run_engines(
-                case, engines, seeds, workspace, jobs, Console(), twins, profile, ranks
-            )
-            found = horizon_of_runs(
-                case, engines, runs.failures, workspace, jobs or cores(), Console()
-            )
+            runs, found = _run(case, engines, seeds, workspace, jobs, twins, profile, ranks)
     datasets = gated(map(Dataset.read, runs.folders), others)
     return _report(case, datasets, runs, workspace, found, others)
+
+
+def _run(case, engines, seeds, workspace, jobs, *ensemble) -> tuple[Runs, Horizon | None]:
+    runs = run_engines(case, engines, seeds, workspace, jobs, Console(), *ensemble)
+    return runs, horizon_of_runs(
+        case, engines, runs.failures, workspace, jobs or cores(), Console()
+    )
 
 
 def _check_ladder(*arguments) -> ExitCode:

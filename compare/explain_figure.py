@@ -12,7 +12,6 @@ from .attribution import Attribution, Change, Endpoint
 from .checks import Check
 from .drawing import INK
 from .explain_tables import LEFT_OVER, change_rows
-from .wording import SHOWN_UNITS
 
 UP, DOWN, UNCLEAR = "#e0752d", "#3b82d6", "#8a8f98"  # an increase, a decrease, neither
 BAR_HEIGHT = 0.62
@@ -54,7 +53,7 @@ def percent_or_unit(check: Check, change: float) -> float:
     """A change on the check's scale, as the axis has it."""
     if check.kind == "ratio":
         return 100 * math.expm1(change)
-    return change * (100 if check.kind == "relative" else _shown(check)[0])
+    return change * (100 if check.kind == "relative" else check.quantity.shown_unit[0])
 
 
 def _draw(panel: Axes, endpoint: Endpoint, names: list[str]) -> None:
@@ -76,7 +75,7 @@ def _draw(panel: Axes, endpoint: Endpoint, names: list[str]) -> None:
     panel.axhline((places[-3] + places[-2]) / 2, color=INK, linewidth=0.6, alpha=0.4)
     panel.set_yticks(places, names)
     panel.set_ylim(places[-1] + 0.6, -0.6)
-    unit = _shown(check)[1] if check.kind == "absolute" else "%"
+    unit = check.quantity.shown_unit[1] if check.kind == "absolute" else "%"
     panel.set_xlim(*_limits(check, changes))
     panel.set_title(check.quantity.title, fontsize=9, loc="left", fontweight="bold")
     panel.set_xlabel(f"change, {unit}" if unit else "change")
@@ -109,7 +108,3 @@ def _colour(change: Change) -> str:
     if not change.clear:
         return UNCLEAR
     return UP if change.mean > 0 else DOWN
-
-
-def _shown(check: Check) -> tuple[float, str]:
-    return SHOWN_UNITS.get(check.quantity.unit, (1.0, check.quantity.unit))

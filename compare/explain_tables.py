@@ -88,7 +88,7 @@ def _number(step: Change) -> str:
         return shown if math.isnan(half) else f"{shown} ± {100 * math.expm1(half):.0f} %"
     factor, unit = 100.0, "%"
     if check.kind == "absolute":
-        factor, unit = wording.SHOWN_UNITS.get(check.quantity.unit, (1.0, check.quantity.unit))
+        factor, unit = check.quantity.shown_unit
     decimals = max(0, 2 - math.floor(math.log10(factor * check.margin)))
     rounded = round(factor * step.mean, decimals) + 0.0  # no minus sign before a zero
     shown = f"{rounded:+.{decimals}f}".replace("-", wording.MINUS)

@@ -14,6 +14,12 @@ from crossdem.adapters.dataset import Dataset
 from . import motion, resistance
 
 
+SHOWN_UNITS = {
+    "m": (1e3, "mm"),
+    "J": (1e3, "mJ"),
+}  # SI unit: factor and unit of a size that reads well
+
+
 @dataclass(frozen=True)
 class Quantity:
     """One number of a run: a function of its resistance table, or of the whole dataset."""
@@ -22,6 +28,12 @@ class Quantity:
     unit: str  # "" for a plain number
     function: Callable[..., float]
     of_table: bool = False
+    own_shown_unit: tuple[float, str] | None = None  # where SHOWN_UNITS has none that reads well
+
+    @property
+    def shown_unit(self) -> tuple[float, str]:
+        """The factor from `unit` to the unit that people read, and that unit."""
+        return self.own_shown_unit or SHOWN_UNITS.get(self.unit, (1.0, self.unit))
 
     @property
     def name(self) -> str:
@@ -51,7 +63,7 @@ QUANTITIES = {
         Quantity("shaft share", "", resistance.shaft_share, of_table=True),
         Quantity("fluctuation", "N", resistance.fluctuation_N, of_table=True),
         Quantity("contacts per particle", "", resistance.contacts_per_particle),
-        Quantity("kinetic energy", "J", resistance.kinetic_energy_J, of_table=True),
+        Quantity("kinetic energy", "J", resistance.kinetic_energy_J, True, (1e6, "µJ")),
         Quantity("surface heave", "m", motion.surface_heave_m),
         Quantity("surface bump", "m", motion.surface_bump_m),
         Quantity("movement near the bar", "m", motion.near_bar_movement_m),

@@ -10,10 +10,6 @@ from . import checks
 from .checks import Check, CheckResult
 from .quantities import Quantity
 
-SHOWN_UNITS = {
-    "m": (1e3, "mm"),
-    "J": (1e3, "mJ"),
-}  # SI unit: factor and unit of a size that reads well
 MINUS = "\N{MINUS SIGN}"
 DASH = "\N{EN DASH}"  # where there is nothing to show
 
@@ -50,7 +46,7 @@ def metres(value_m: float) -> str:
 
 
 def quantity_value(quantity: Quantity, value: float, digits: int = 3) -> str:
-    factor, unit = SHOWN_UNITS.get(quantity.unit, (1, quantity.unit))
+    factor, unit = quantity.shown_unit
     return f"{number(factor * value, digits)} {unit}".rstrip()
 
 
@@ -64,7 +60,7 @@ def with_scatter(mean: float, scatter: float | None) -> str:
 
 
 def quantity_with_scatter(quantity: Quantity, mean: float, scatter: float | None) -> str:
-    factor, unit = SHOWN_UNITS.get(quantity.unit, (1, quantity.unit))
+    factor, unit = quantity.shown_unit
     shown = with_scatter(factor * mean, None if scatter is None else factor * scatter)
     return shown if math.isnan(mean) else f"{shown} {unit}".rstrip()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib.metadata
 import os
 import signal
 import sys
@@ -24,6 +24,14 @@ class WorkflowError(Exception):
     """Snakemake is missing, or a profile."""
 
 
+def version() -> str:
+    """Of the Snakemake that is installed. Raises WorkflowError."""
+    try:
+        return importlib.metadata.version("snakemake")
+    except importlib.metadata.PackageNotFoundError as error:
+        raise WorkflowError("snakemake is not installed: apt install snakemake") from error
+
+
 class Snakemake:
     """Snakemake at work on the plan in the folder `call`."""
 
@@ -32,8 +40,7 @@ class Snakemake:
 
         Raises WorkflowError, OSError.
         """
-        if not importlib.util.find_spec("snakemake"):
-            raise WorkflowError("snakemake is not installed: apt install snakemake")
+        version()
         self.log = call / LOG
         self._grace_s = GRACE_ON_CLUSTER_S if profile else GRACE_S
         command = [

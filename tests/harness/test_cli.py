@@ -5,6 +5,7 @@ import json
 import signal
 import subprocess
 import time
+from importlib.metadata import version
 
 import pytest
 from command_line import REFERENCE, ROOT, crossdem
@@ -75,8 +76,10 @@ def test_a_warning_of_the_solver_reaches_the_user():
     assert "warning: time.step_s" in ended.stderr
 
 
-def test_doctor_knows_the_solver():
-    assert "crossdem-solver " in crossdem("doctor").stdout
+def test_doctor_knows_the_solver_and_what_runs_the_engines():
+    said = dict(line.split(maxsplit=1) for line in crossdem("doctor").stdout.splitlines())
+    assert said["native"].startswith("crossdem-solver ")
+    assert said["snakemake"] == version("snakemake")
 
 
 def test_doctor_says_what_to_install(tmp_path):

@@ -1,5 +1,6 @@
 """Ensembles through Snakemake: what is tried again, what goes on, what a kill leaves, and what a second call makes of it."""
 
+import importlib.metadata
 import json
 import os
 import signal
@@ -132,7 +133,10 @@ def test_the_contacts_of_the_others_are_held_against_the_native_run(fake, case, 
 
 
 def test_without_snakemake_it_says_how_to_get_it(packings, out, case, monkeypatch):
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    def missing(name):
+        raise importlib.metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr("importlib.metadata.version", missing)
     with pytest.raises(WorkflowError, match="apt install snakemake"):
         ensemble(case, packings[:1], ["native"], out)
 
@@ -227,12 +231,17 @@ def test_only_what_nobody_works_in_any_more_is_cleared_away(tmp_path):
     ended.wait()
     dead = tmp_path / f".native-seed1-0@{machine()}-{ended.pid}-1-00000000.work"
     reborn = tmp_path / f".native-seed1-0@{machine()}-{os.getpid()}-1-00000000.work"
+    unread = subprocess.Popen(["true"])  # ended, but its parent has not asked how
+    wait_for(lambda: not alive(unread.pid))
+    born = Path(f"/proc/{unread.pid}/stat").read_text().rpartition(")")[2].split()[19]
+    zombie = tmp_path / f".native-seed1-0@{machine()}-{unread.pid}-{born}-00000000.work"
     elsewhere = tmp_path / ".native-seed1-0@other-000000-1-1-00000000.work"
     forgotten = tmp_path / ".native-seed1-0@other-000000-1-1-00000001.work"
-    for folder in (ours, dead, reborn, elsewhere, forgotten, tmp_path / "native-seed1-0"):
+    for folder in (ours, dead, reborn, zombie, elsewhere, forgotten, tmp_path / "native-seed1-0"):
         folder.mkdir()
     os.utime(forgotten, (0, 0))
     clear_away(tmp_path)
+    unread.wait()
     assert names_in(tmp_path) == sorted([ours.name, elsewhere.name, "native-seed1-0"])
 
 
