@@ -44,9 +44,7 @@ class CheckBlock(NamedTuple):
     """One check with its rows for all pairs."""
 
     title: str
-    definition: str
     margin: str
-    alarm: str
     reason: str
     rows: list[CheckRow]
 
@@ -63,7 +61,6 @@ def headlines(comparison: Comparison) -> list[Headline]:
         ends = dict.fromkeys(wording.number(end) for end in (means.min(), means.max()))
         span = f"{' to '.join(ends)} {quantity.unit}"
     verdict = comparison.verdict
-    needed = seeds_text(verdict.seeds_needed) if comparison.results else "no pair was checked"
     bar, time = comparison.case.resolved["bar"], comparison.case.resolved["time"]
     deepest_cm = 100 * bar["speed_m_s"] * time["penetration_s"]
     window = f"mean resistance from {resistance.DEEP_FROM * deepest_cm:.3g} to {deepest_cm:.3g} cm"
@@ -76,9 +73,17 @@ def headlines(comparison: Comparison) -> list[Headline]:
                 runs_each(comparison),
             ),
             "behind this verdict",
-            f"a statement of equivalence needs {needed}" if comparison.results else needed,
+            _needed(comparison),
         ),
     ]
+
+
+def _needed(comparison: Comparison) -> str:
+    if not comparison.results:
+        return "no pair was checked"
+    if all(result.outcome != INCONCLUSIVE for result in comparison.results):
+        return "no check is open"
+    return f"for equivalence open checks need {seeds_text(comparison.verdict.seeds_needed)}"
 
 
 def _largest_difference(comparison: Comparison) -> Headline:
@@ -105,9 +110,7 @@ def check_blocks(comparison: Comparison) -> list[CheckBlock]:
     return [
         CheckBlock(
             title=check.quantity.title,
-            definition=check.quantity.definition,
             margin=wording.margin(check),
-            alarm=wording.band(check, max(result.alarm for result in results)),
             reason=check.reason,
             rows=[_check_row(result) for result in results],
         )

@@ -34,7 +34,7 @@ class Verdict:
     sentence: str
     next_step: str  # what to do now
     seeds: int  # packings behind every check: the fewest of any pair of engines
-    seeds_needed: int | None  # for a statement of equivalence in every check; None: more than MOST_SEEDS, or no checks
+    seeds_needed: int | None  # for a statement of equivalence in every open check; None: more than MOST_SEEDS, or none is
 
     @property
     def exit_code(self) -> ExitCode:
@@ -54,12 +54,14 @@ def decide(
     `failed_gates` are lines that name the run and the gate; `strays` name the engines that differ particle by particle
     before the horizon, and when: that is no chance, and comes first. `runs_each` says how many runs the packings have.
 
-    AGREES is the claim that every check is EQUIVALENT. With fewer packings than that takes, nothing outside the alarm
-    band is as much as can be said, and it is called CONSISTENT.
+    AGREES is the claim that every check is EQUIVALENT. Where every open check has fewer packings than that takes, no
+    difference is as much as can be said, and it is called CONSISTENT. A check that stays open with packings enough to show
+    equal engines as equivalent is a finding: INCONCLUSIVE.
     """
     outcomes = [result.outcome for result in results]
     seeds = min((len(result.seeds) for result in results), default=0)
-    needed = _most([result.seeds_needed for result in results])
+    still_open = [result for result in results if result.outcome == checks.INCONCLUSIVE]
+    needed = _most([result.seeds_needed for result in still_open])
     behind = packings(seeds, runs_each)
 
     if strays:
@@ -76,10 +78,10 @@ def decide(
         word, sentence, next_step = INCONCLUSIVE, *_not_comparable(_first_obstacle(results))
     elif all(outcome == checks.EQUIVALENT for outcome in outcomes):
         word, sentence, next_step = AGREES, *_agrees(engines, results, behind)
-    elif needed is None or seeds < needed:
-        word, sentence, next_step = CONSISTENT, *_consistent(engines, results, behind, needed)
+    elif unsettled := [result for result in still_open if _planned_for(result)]:
+        word, sentence, next_step = INCONCLUSIVE, *_unsettled(unsettled, results, behind)
     else:
-        word, sentence, next_step = INCONCLUSIVE, *_unsettled(results, behind)
+        word, sentence, next_step = CONSISTENT, *_consistent(engines, results, behind, needed)
     return Verdict(word, sentence, next_step, seeds, needed)
 
 
@@ -87,6 +89,11 @@ def seeds_text(seeds_needed: int | None) -> str:
     if seeds_needed is None:
         return f"more than {MOST_SEEDS} packings"
     return plural(seeds_needed, "packing")
+
+
+def _planned_for(result: CheckResult) -> bool:
+    """Whether there are as many packings as equal engines need."""
+    return result.seeds_needed is not None and len(result.seeds) >= result.seeds_needed
 
 
 def _most(needed: list[int | None]) -> int | None:
@@ -102,10 +109,10 @@ def _strayed(strays: Sequence[str]) -> tuple[str, str]:
 
 def _differs(results) -> tuple[str, str]:
     found = [result for result in results if result.outcome == checks.DIFFERENT]
-    worst = max(found, key=lambda result: abs(result.difference) / result.alarm)
+    worst = max(found, key=_margins_apart)
     a, b = worst.pair
     sentence = (
-        f"The engines differ in {len(found)} of {plural(len(results), 'check')}; most, against its scatter, in the "
+        f"The engines differ in {len(found)} of {plural(len(results), 'check')}; most, against its margin, in the "
         f"{worst.check.quantity.title}: {a} {signed_difference(worst.check, worst.difference)} against {b}."
     )
     return sentence, "See the check table for what differs, then the displacement fields for where."
@@ -165,25 +172,35 @@ def _all(checked: int) -> str:
 def _consistent(engines, results, behind, needed) -> tuple[str, str]:
     shown = sum(result.outcome == checks.EQUIVALENT for result in results)
     sentence = (
-        f"{behind} of {listed(engines)} show no alarming difference: every gate passed, and "
-        f"nothing lies outside the alarm bands. This is no statement of equivalence: {shown} of "
-        f"{plural(len(results), 'check')} {'is' if shown == 1 else 'are'} EQUIVALENT, and for all of them it takes "
-        f"about {seeds_text(needed)}."
+        f"{behind} of {listed(engines)} show no difference beyond a margin, and every gate passed. This is no "
+        f"statement of equivalence: {shown} of {plural(len(results), 'check')} {'is' if shown == 1 else 'are'} EQUIVALENT, "
+        f"and for the others it takes about {seeds_text(needed)}, if the engines are equal."
     )
     if needed is None:
         return sentence, "Widen the margins that no reasonable number of packings can meet."
     return sentence, f"For a statement of equivalence run the same with --seeds {needed}."
 
 
-def _unsettled(results, behind) -> tuple[str, str]:
-    open_ones = [result for result in results if result.outcome == checks.INCONCLUSIVE]
-    first = open_ones[0]
+def _unsettled(unsettled, results, behind) -> tuple[str, str]:
+    """Of the checks that have packings enough and stay open all the same."""
+    worst = max(unsettled, key=_margins_apart)
+    a, b = worst.pair
     sentence = (
-        f"{behind} would show equal engines as equivalent, but {len(open_ones)} of "
-        f"{plural(len(results), 'check')} stay INCONCLUSIVE; first {first.check.quantity.title} of {first.pair[0]} "
-        f"against {first.pair[1]}: {explanation(first)}."
+        f"{plural(len(unsettled), 'check')} of {len(results)} "
+        f"{'stays' if len(unsettled) == 1 else 'stay'} INCONCLUSIVE, though {behind} would show equal engines as EQUIVALENT "
+        f"in most cases; furthest apart, the {worst.check.quantity.title} of {a} against {b}: {explanation(worst)}."
     )
-    return (
-        sentence,
-        "The differences are about as large as their margins: look at their cause, or run more packings.",
-    )
+    apart = f"That difference is {_margins_apart(worst):.2g} margins"
+    enough = worst.seeds_to_settle
+    if enough is None:
+        return (
+            sentence,
+            f"{apart}: no reasonable number of packings settles it; look for its cause.",
+        )
+    if enough <= len(worst.seeds):
+        return sentence, f"{apart}, and scatters more than was planned for: run more packings."
+    return sentence, f"{apart}: if it is as measured, --seeds {enough} settles it in most cases."
+
+
+def _margins_apart(result: CheckResult) -> float:
+    return abs(result.difference) / result.margin

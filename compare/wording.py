@@ -127,15 +127,13 @@ def explanation(result: CheckResult) -> str:
     """Why the outcome is what it is; no full stop."""
     if result.outcome == checks.NOT_COMPARABLE:
         return "; ".join(result.obstacles)
-    if result.alarmed:
+    if result.alarm is not None:
         shown = signed_difference(result.check, result.difference)
+        alarm = f"the alarm band of {plural(len(result.seeds), 'packing')}, {band(result.check, result.alarm)}"
+        if result.alarmed:
+            return f"the mean difference {shown} lies outside {alarm}"
         return (
-            f"the mean difference {shown} is outside the alarm band {band(result.check, result.alarm)} "
-            f"({checks.ALARM_SCATTERS} seed-to-seed standard deviations, and the margin)"
-        )
-    if len(result.seeds) < checks.SEEDS_FOR_INTERVAL:
-        return (
-            f"{plural(len(result.seeds), 'packing')} can only raise an alarm, and there is none; "
+            f"{plural(len(result.seeds), 'packing')} can only raise an alarm, and {shown} lies within {alarm}; "
             f"a statement of equivalence needs {needed(result.seeds_needed)}"
         )
     where = f"the 90 % interval {interval(result)}"

@@ -93,7 +93,7 @@ def test_three_twins_of_a_packing_count_once_however_many_the_other_engine_has()
 def test_fewer_than_five_packings_only_raise_alarms(seeds):
     assert outcome([1.0] * seeds, [1.0] * seeds) == INCONCLUSIVE
     assert outcome([1.2] * seeds, [1.0] * seeds) == INCONCLUSIVE
-    assert outcome([1.5] * seeds, [1.0] * seeds) == DIFFERENT
+    assert outcome([1.6] * seeds, [1.0] * seeds) == DIFFERENT
 
 
 def test_a_difference_that_is_not_significant_is_no_equivalence():
@@ -148,18 +148,30 @@ def test_differences_without_scatter_at_the_margin_are_inconclusive():
     assert outcome([1.5] * 5, [1.0] * 5, absolute(margin - 0.01)) == DIFFERENT
 
 
-def test_a_shift_beyond_the_alarm_band_differs_at_any_number_of_seeds():
-    assert outcome([1.5], [1.0]) == DIFFERENT
-    assert outcome([1.0], [1.5]) == DIFFERENT
-    assert outcome([1.5, 1.6], [1.0, 1.1]) == DIFFERENT
+@pytest.mark.parametrize(
+    "seeds, half_width", [(1, 0.1 + 0.24 * 2**0.5), (2, 0.34), (4, 0.1 + 0.24 / 2**0.5)]
+)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_alarm_band_is_three_standard_errors_wider_than_the_margin(seeds, half_width, sign):
+    """0.08 is stated: 0.08 sqrt(2 / n) is the standard error of the mean difference of n packings."""
+    check = absolute(0.1)
+    for share, expected in ((0.999, INCONCLUSIVE), (1.001, DIFFERENT)):
+        result = judged([1 + sign * share * half_width] * seeds, [1.0] * seeds, check)
+        assert (result.outcome, result.alarm) == (expected, pytest.approx(half_width))
+        assert ("outside" in wording.explanation(result)) == (expected == DIFFERENT)
+        assert wording.band(check, half_width) in wording.explanation(result)
 
 
-def test_the_alarm_band_is_four_seed_to_seed_scatters():
-    just_inside, just_outside = 1 + 0.31, 1 + 0.33
-    for value, expected in ((just_inside, INCONCLUSIVE), (just_outside, DIFFERENT)):
-        b = 1.0
-        a = b * (2 + (value - 1)) / (2 - (value - 1))  # (a - b) / mean = value - 1
-        assert outcome([a], [b]) == expected
+def test_from_five_packings_on_nothing_differs_that_the_interval_does_not_show():
+    """A mean far outside any alarm band, of differences that scatter as much."""
+    shifts = np.array([1.5, 0.5, 1.4, 0.6, 1.0])
+    quiet = Check(RESISTANCE, "absolute", 0.1, 0.001, "")
+    result = judged(1 + shifts, [1.0] * 5, quiet)
+    assert result.difference == pytest.approx(1.0) and result.interval[0] < 0.6
+    assert (result.outcome, result.alarm) == (DIFFERENT, None)
+    wide = Check(RESISTANCE, "absolute", 0.7, 0.001, "")
+    assert judged(1 + shifts, [1.0] * 5, wide).outcome == INCONCLUSIVE
+    assert judged(1 + shifts[:4], [1.0] * 4, wide).outcome == DIFFERENT
 
 
 def test_runs_that_scatter_more_than_the_case_states_widen_the_alarm_band():
@@ -172,7 +184,7 @@ def test_runs_that_scatter_more_than_the_case_states_widen_the_alarm_band():
     result = judged([value + 0.5 for value in wild], wild)
     calmer = math.sqrt(4 * 0.3**2 / 3) / 1.8
     assert result.scatter == pytest.approx(calmer)
-    assert not result.alarmed and result.alarm == pytest.approx(4 * calmer)
+    assert not result.alarmed and result.alarm == pytest.approx(0.1 + 3 * calmer / math.sqrt(2))
 
 
 def test_an_engine_that_scatters_wildly_does_not_excuse_itself():
@@ -214,11 +226,11 @@ def test_relative_differences_are_over_the_mean_of_both_engines():
 
 def test_a_ratio_is_compared_as_a_factor_either_way():
     ratio = Check(RESISTANCE, "ratio", 1.33, 1.15, "")
-    up = judged([2.0, 2.0], [1.0, 1.0], ratio)
-    down = judged([1.0, 1.0], [2.0, 2.0], ratio)
-    assert up.difference == pytest.approx(math.log(2))
-    assert down.difference == pytest.approx(-math.log(2))
-    assert up.outcome == down.outcome == DIFFERENT  # 2 > 1.15^4 = 1.75
+    up = judged([2.1, 2.1], [1.0, 1.0], ratio)
+    down = judged([1.0, 1.0], [2.1, 2.1], ratio)
+    assert up.difference == pytest.approx(math.log(2.1))
+    assert down.difference == pytest.approx(-math.log(2.1))
+    assert up.outcome == down.outcome == DIFFERENT  # 2.1 > 1.33 x 1.15^3 = 2.02
     assert outcome([1.3] * 5, [1.0] * 5, ratio) == EQUIVALENT
     assert outcome([1.0] * 5, [1.3] * 5, ratio) == EQUIVALENT
 

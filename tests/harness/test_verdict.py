@@ -3,13 +3,17 @@
 import gc
 import weakref
 
+import numpy as np
+import pandas as pd
 import pytest
 import synthetic
+from scipy import stats
 
 from crossdem import ExitCode
 from crossdem.compare import checks, verdict
 from crossdem.compare.comparison import ComparisonError, compare_runs
 from crossdem.compare.ensemble import Ensemble
+from crossdem.compare.margins import Check
 
 ENGINES = ("native", "liggghts", "yade")
 RUN_CASE = synthetic.case()
@@ -64,6 +68,65 @@ def test_enough_seeds_that_settle_nothing_are_inconclusive():
     shifted = runs(seeds=16, factors=(1, 1.1, 1), noise=0.05)
     said = compare_runs(RUN_CASE, shifted).verdict
     assert (said.word, said.exit_code) == (verdict.INCONCLUSIVE, ExitCode.INCONCLUSIVE)
+
+
+def settled(mean_resistance, work=(0.0, 0.125), packings=16, stated=0.08):
+    """The verdict on two checks of a margin of 0.1, whose differences have this mean and standard deviation."""
+    scores = stats.norm.ppf((np.arange(packings) + 0.5) / packings)
+    scores /= scores.std(ddof=1)
+    rng = np.random.default_rng(1)
+    index = pd.MultiIndex.from_product([ENGINES[:2], range(packings)], names=["engine", "seed"])
+    endpoints = pd.DataFrame(1.0, index, ["mean_resistance_N", "work_J"])
+    for name, (mean, scatter) in zip(endpoints, (mean_resistance, work)):
+        endpoints.loc["liggghts", name] = 1 + mean + scatter * rng.permutation(scores)
+    entry = synthetic.MEAN_RESISTANCE | {"kind": "absolute", "seed_scatter": stated}
+    case = synthetic.case([entry, entry | {"quantity": "work_J"}])
+    results = checks.evaluate(Check.of_case(case.resolved), ENGINES[1::-1], endpoints)
+    return results, verdict.decide(ENGINES[:2], results, {})
+
+
+def test_a_check_that_stays_open_with_packings_enough_is_inconclusive_whatever_the_others_need():
+    (found, other), said = settled((0.104, 0.048))
+    assert (found.outcome, other.outcome) == (checks.INCONCLUSIVE, checks.EQUIVALENT)
+    assert found.interval == pytest.approx((0.083, 0.125), abs=1e-3)
+    assert found.seeds_needed < len(found.seeds) < other.seeds_needed
+    assert said.word == verdict.INCONCLUSIVE
+    assert said.sentence.startswith("1 check of 2 stays INCONCLUSIVE, though 16 packings would")
+    assert "the mean resistance of liggghts against native: the 90 % interval" in said.sentence
+
+
+def test_an_open_check_that_needs_more_packings_is_consistent_whatever_the_others_need():
+    (found, other), said = settled((0.0, 0.04), work=(0.06, 0.125))
+    assert (found.outcome, other.outcome) == (checks.EQUIVALENT, checks.INCONCLUSIVE)
+    assert (said.word, said.seeds_needed) == (verdict.CONSISTENT, other.seeds_needed)
+    assert (
+        f"1 of 2 checks is EQUIVALENT, and for the others it takes about {other.seeds_needed}"
+        in (said.sentence)
+    )
+    assert said.next_step.endswith(f"--seeds {other.seeds_needed}.")
+
+
+@pytest.mark.parametrize(
+    "mean, told",
+    [
+        (0.085, "0.85 margins: if it is as measured, --seeds {} settles"),
+        (0.115, "1.1 margins: if it is as measured, --seeds {} settles"),
+        (0.1001, "1 margins: no reasonable number of packings settles it"),
+    ],
+)
+def test_the_next_step_for_an_open_check_follows_from_what_was_measured(mean, told):
+    (found, _), said = settled((mean, 0.048), work=(0.0, 0.01))
+    assert said.word == verdict.INCONCLUSIVE
+    assert told.format(found.seeds_to_settle) in said.next_step
+    assert found.seeds_to_settle is None or found.seeds_to_settle > 16
+
+
+def test_an_open_check_that_scatters_more_than_planned_asks_for_more_packings():
+    """Of fewer than 10 packings the scatter planned with is the one that the case states."""
+    (found, _), said = settled((0.04, 0.15), work=(0.0, 0.001), packings=8, stated=0.02)
+    assert (found.outcome, said.word) == (checks.INCONCLUSIVE, verdict.INCONCLUSIVE)
+    assert found.seeds_to_settle <= 8
+    assert "scatters more than was planned for: run more packings" in said.next_step
 
 
 def test_an_engine_that_cannot_express_the_case_has_not_failed():
