@@ -28,6 +28,7 @@ __all__ = [
     "NOT_COMPARABLE",
     "Check",
     "CheckResult",
+    "by_check",
     "check_faults",
     "evaluate",
 ]
@@ -164,6 +165,14 @@ def evaluate(
         )
         for number, check in enumerate(checks)
     ]
+
+
+def by_check(results: Sequence[CheckResult]) -> dict[Check, list[CheckResult]]:
+    """The results of several pairs, together by check, in their order."""
+    found: dict[Check, list[CheckResult]] = {}
+    for result in results:
+        found.setdefault(result.check, []).append(result)
+    return found
 
 
 def _judged(result: CheckResult) -> CheckResult:

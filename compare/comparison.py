@@ -17,7 +17,7 @@ from .answers import answer_faults
 from .checks import Check, CheckResult, check_faults, evaluate
 from .ensemble import Ensemble, packing_means
 from .horizon import Horizon
-from .intake import Intake, failed_gates, missing_runs, other_packings
+from .intake import Intake, failed_gates, obstacles
 from .opinions import Opinions
 from .quantities import QUANTITIES, unknown_quantities
 from .verdict import Verdict, decide
@@ -60,7 +60,7 @@ class Comparison:
     @functools.cached_property
     def opinions(self) -> Opinions:
         """Beside the verdict: no part of it. They take seconds."""
-        return Opinions.of(self.case, self.ensemble)
+        return Opinions.of(self.case, self.ensemble, self.failures)
 
     def of(self, engine: str) -> list[Dataset]:
         return [dataset for dataset in self.datasets if dataset.engine == engine]
@@ -114,9 +114,7 @@ def compare_runs(
             checks,
             (first, second),
             endpoints,
-            missing_runs((first, second), failures)
-            + failed_gates(ensemble.manifests, (first, second))
-            + other_packings((first, second), ensemble.manifests),
+            obstacles((first, second), ensemble.manifests, failures),
         )
     )
     failed = {run: why for run, why in failures.items() if run not in unsupported}

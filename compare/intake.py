@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -77,6 +78,21 @@ def run_name(run: tuple[str, int, int]) -> str:
     return f"{engine}, seed {seed}" + (f", twin {twin}" if twin else "")
 
 
+def obstacles(
+    engines: Sequence[str], manifests: Manifests, failures: dict[tuple[str, int], str]
+) -> list[str]:
+    """A line for everything that forbids to compare these engines with one another."""
+    return [
+        *missing_runs(engines, failures),
+        *failed_gates(manifests, engines),
+        *(
+            line
+            for pair in itertools.combinations(engines, 2)
+            for line in other_packings(pair, manifests)
+        ),
+    ]
+
+
 def failed_gates(manifests: Manifests, engines: Iterable[str]) -> list[str]:
     """A line for each gate that a run of these engines did not pass, in whichever twin."""
     return [
@@ -88,15 +104,15 @@ def failed_gates(manifests: Manifests, engines: Iterable[str]) -> list[str]:
     ]
 
 
-def missing_runs(pair: tuple[str, str], failures: dict[tuple[str, int], str]) -> list[str]:
-    """A line for each packing that an engine of the pair has no result on: to leave out what failed would flatter it.
+def missing_runs(engines: Iterable[str], failures: dict[tuple[str, int], str]) -> list[str]:
+    """A line for each packing that one of these engines has no result on: to leave out what failed would flatter it.
 
-    A packing that an engine was never asked to run is no such thing: the pair is compared on those that both have.
+    A packing that an engine was never asked to run is no such thing: engines are compared on those that all of them have.
     """
     return [
         f"{engine}, seed {seed}: {why}"
         for (engine, seed), why in failures.items()
-        if engine in pair
+        if engine in engines
     ]
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from . import theory, wording
-from .checks import CheckResult
-from .consensus import FEWEST_ENGINES
+from .checks import CheckResult, by_check
+from .consensus import FEWEST_ENGINES, apart
 from .curves import CurveComparison
 from .fields import FieldComparison
 from .opinions import Opinions
@@ -34,12 +34,22 @@ class PairRow(NamedTuple):
     sentence: str
 
 
+class ConsensusCell(NamedTuple):
+    """One engine against the others, in one check."""
+
+    outcome: str
+    difference: str
+    interval: str
+    explanation: str
+    apart: bool  # it is the one that stands apart
+
+
 class ConsensusRow(NamedTuple):
-    """One check: for each engine (outcome, difference to the others, 90 % interval, explanation)."""
+    """One check: a cell for each engine."""
 
     title: str
     margin: str
-    cells: list[tuple[str, str, str, str]]
+    cells: list[ConsensusCell]
 
 
 class TheoryRow(NamedTuple):
@@ -62,6 +72,7 @@ def values(opinions: Opinions) -> dict:
         "fields": [_field_row(one) for one in opinions.fields],
         "engines": opinions.engines,
         "consensus": _consensus_rows(opinions.consensus),
+        "dragged": "half" if len(opinions.engines) == 3 else f"1/{len(opinions.engines) - 1}",
         "fewest_engines": FEWEST_ENGINES,
         "consensus_packings": plural(len(opinions.consensus[0].seeds), "packing")
         if opinions.consensus
@@ -145,14 +156,18 @@ def record(opinions: Opinions) -> dict:
         "consensus": [
             {
                 "engine": one.pair[0],
-                "quantity": one.check.quantity.name,
+                "quantity": check.quantity.name,
+                "kind": check.kind,
+                "margin": check.margin,
                 "outcome": one.outcome,
+                "stands_apart": one.pair[0] == apart(of_check),
                 "seeds": one.seeds,
                 "difference": one.difference,
                 "interval_90": one.interval,
                 "explanation": wording.explanation(one),
             }
-            for one in opinions.consensus
+            for check, of_check in by_check(opinions.consensus).items()
+            for one in of_check
         ],
         "theory": [
             {key: value for key, value in vars(one).items() if key != "window"} | vars(one.window)
@@ -179,15 +194,24 @@ def _field_row(fields: FieldComparison) -> PairRow:
 
 
 def _consensus_rows(results: tuple[CheckResult, ...]) -> list[ConsensusRow]:
-    rows: dict[str, ConsensusRow] = {}
-    for one in results:
-        check = one.check
-        row = rows.setdefault(
-            check.quantity.name, ConsensusRow(check.quantity.title, wording.margin(check), [])
+    return [
+        ConsensusRow(
+            check.quantity.title,
+            wording.margin(check),
+            [_consensus_cell(one, apart(of_check)) for one in of_check],
         )
-        difference = signed_difference(check, one.difference)
-        row.cells.append((one.outcome, difference, wording.interval(one), wording.explanation(one)))
-    return list(rows.values())
+        for check, of_check in by_check(results).items()
+    ]
+
+
+def _consensus_cell(one: CheckResult, furthest: str | None) -> ConsensusCell:
+    return ConsensusCell(
+        one.outcome,
+        signed_difference(one.check, one.difference),
+        wording.interval(one),
+        wording.explanation(one),
+        one.pair[0] == furthest,
+    )
 
 
 def _theory_row(opinion: theory.Opinion) -> TheoryRow:

@@ -17,13 +17,14 @@ from .consensus import leave_one_out
 from .curves import CurveComparison, compare_curves
 from .ensemble import Ensemble
 from .fields import FieldComparison, compare_fields
+from .intake import obstacles
 from .margins import Check
 from .pairing import sound
 
 
 @dataclass(frozen=True)
 class Opinions:
-    """All of them, of one comparison. Runs that failed a gate take no part."""
+    """All of them, of one comparison. Runs that failed a gate take no part, and are no consensus."""
 
     engines: tuple[str, ...]  # with runs
     margin: Check | None  # that of the mean resistance, which holds for the curves, too
@@ -33,8 +34,9 @@ class Opinions:
     theory: tuple[theory.Opinion, ...]
 
     @classmethod
-    def of(cls, case: Case, ensemble: Ensemble) -> "Opinions":
-        ensemble = sound(ensemble)
+    def of(cls, case: Case, ensemble: Ensemble, failures: dict[tuple[str, int], str]) -> "Opinions":
+        """`failures` says for each (engine, seed) without result why."""
+        manifests, ensemble = ensemble.manifests, sound(ensemble)
         engines = ensemble.engines
         # the later engine first, as the checks have it
         pairs = [(first, second) for second, first in itertools.combinations(engines, 2)]
@@ -45,6 +47,10 @@ class Opinions:
             margin,
             tuple(compare_curves(ensemble.profiles, pair, margin) for pair in pairs),
             tuple(compare_fields(ensemble.fields, pair) for pair in pairs),
-            tuple(leave_one_out(checks, ensemble.endpoints, engines)),
+            tuple(
+                leave_one_out(
+                    checks, ensemble.endpoints, engines, obstacles(engines, manifests, failures)
+                )
+            ),
             tuple(theory.opinions(ensemble.endpoints, engines)),
         )

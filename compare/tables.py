@@ -9,7 +9,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from . import resistance, wording
-from .checks import DIFFERENT, EQUIVALENT, INCONCLUSIVE, NOT_COMPARABLE, Check, CheckResult
+from .checks import DIFFERENT, EQUIVALENT, INCONCLUSIVE, NOT_COMPARABLE, CheckResult, by_check
 from .comparison import Comparison
 from .ensemble import PACKING
 from .quantities import QUANTITIES
@@ -114,13 +114,15 @@ def check_blocks(comparison: Comparison) -> list[CheckBlock]:
             reason=check.reason,
             rows=[_check_row(result) for result in results],
         )
-        for check, results in _by_check(comparison).items()
+        for check, results in by_check(comparison.results).items()
     ]
 
 
 def outcome_rows(comparison: Comparison) -> list[tuple[str, list[CheckResult]]]:
     """A row for each check: its title, and what it says of each pair, in the order of `comparison.pairs`."""
-    return [(check.quantity.title, results) for check, results in _by_check(comparison).items()]
+    return [
+        (check.quantity.title, results) for check, results in by_check(comparison.results).items()
+    ]
 
 
 def pair_matrix(comparison: Comparison) -> list[tuple[str, list[list[tuple[str, str]] | None]]]:
@@ -139,13 +141,6 @@ def pair_matrix(comparison: Comparison) -> list[tuple[str, list[list[tuple[str, 
 
     engines = comparison.engines
     return [(row, [cell(row, column) for column in engines[:-1]]) for row in engines[1:]]
-
-
-def _by_check(comparison: Comparison) -> dict[Check, list[CheckResult]]:
-    found: dict[Check, list[CheckResult]] = {}
-    for result in comparison.results:
-        found.setdefault(result.check, []).append(result)
-    return found
 
 
 def _check_row(result: CheckResult) -> CheckRow:

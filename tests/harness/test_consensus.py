@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 from paired_tables import table
 
-from crossdem.compare.checks import DIFFERENT, EQUIVALENT, evaluate
-from crossdem.compare.consensus import OTHERS, leave_one_out
+from crossdem.compare.checks import DIFFERENT, EQUIVALENT, NOT_COMPARABLE, evaluate
+from crossdem.compare.consensus import OTHERS, apart, leave_one_out
 from crossdem.compare.margins import Check
 from crossdem.compare.quantities import QUANTITIES
 
@@ -39,13 +39,31 @@ def test_each_engine_is_held_against_the_mean_of_the_others():
     assert yade.means == pytest.approx((means[2], (means[0] + means[1]) / 2))
     assert yade.difference == pytest.approx((yade.means[0] - yade.means[1]) / (sum(yade.means) / 2))
     assert yade.outcome == DIFFERENT
-    assert EQUIVALENT not in {one.outcome for one in results}  # it pulls on the others' mean, too
-    assert abs(yade.difference) > 1.5 * max(abs(one.difference) for one in results[:2])
 
 
-def test_equal_codes_are_equivalent_to_the_others():
+@pytest.mark.parametrize("off", ENGINES)
+@pytest.mark.parametrize("factor", [0.75, 1.3])
+def test_an_outlier_shifts_the_others_by_half_its_distance_and_is_the_one_that_stands_apart(
+    off, factor
+):
+    factors = [factor if engine == off else 1.0 for engine in ENGINES]
+    results = leave_one_out([CHECK], endpoints(factors), ENGINES)
+    assert {one.outcome for one in results} == {DIFFERENT}
+    shifts = {one.pair[0]: one.means[0] - one.means[1] for one in results}
+    for engine in set(ENGINES) - {off}:
+        assert shifts[engine] == pytest.approx(-shifts[off] / 2, abs=0.03)
+    assert apart(results) == off
+
+
+def test_equal_codes_are_equivalent_to_the_others_and_none_stands_apart():
     results = leave_one_out([CHECK], endpoints(), ENGINES)
     assert {one.outcome for one in results} == {EQUIVALENT}
+    assert apart(results) is None
+
+
+def test_an_obstacle_of_one_code_forbids_the_consensus_of_all():
+    results = leave_one_out([CHECK], endpoints(), ENGINES, ["yade, seed 1: it does not rest"])
+    assert {one.outcome for one in results} == {NOT_COMPARABLE}
 
 
 def test_of_two_codes_the_others_would_be_the_other_one():

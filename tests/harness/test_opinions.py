@@ -7,7 +7,8 @@ import synthetic
 from test_report import HOSTILE, Page
 
 from crossdem import ExitCode
-from crossdem.compare import report
+from crossdem.compare import opinion_tables, report
+from crossdem.compare.checks import EQUIVALENT, NOT_COMPARABLE
 from crossdem.compare.comparison import compare_runs
 
 HEADINGS = (
@@ -90,7 +91,36 @@ def test_a_run_that_failed_a_gate_takes_no_part():
     assert [one.seeds for one in opinions.curves] == [(1, 2), (1,), (1,)]
     assert [one.seeds for one in opinions.fields] == [(1, 2), (1,), (1,)]
     assert {one.seeds for one in opinions.consensus} == {(1,)}
+    assert {one.outcome for one in opinions.consensus} == {NOT_COMPARABLE}
     assert [one.packings for one in opinions.theory if one.engine == "yade"] == [1, 1]
+
+
+def test_there_is_no_consensus_while_a_run_is_missing():
+    run_case = synthetic.case()
+    runs = [synthetic.dataset(run_case, engine, seed) for engine in FACTORS for seed in range(1, 9)]
+    assert {one.outcome for one in compare_runs(run_case, runs).opinions.consensus} == {EQUIVALENT}
+    lost = compare_runs(run_case, runs, {("yade", 9): "lost 3 particles"}).opinions
+    assert {one.outcome for one in lost.consensus} == {NOT_COMPARABLE}
+
+
+def test_two_checks_of_one_quantity_are_two_rows_and_the_code_that_stands_apart_is_named(tmp_path):
+    strict = synthetic.MEAN_RESISTANCE | {"kind": "ratio", "margin": 1.02, "seed_scatter": 1.01}
+    run_case = synthetic.case([synthetic.MEAN_RESISTANCE, strict])
+    runs = (
+        synthetic.dataset(run_case, engine, seed, factor=1.2 if engine == "liggghts" else 1.0)
+        for engine in FACTORS
+        for seed in range(1, 9)
+    )
+    found = compare_runs(run_case, runs)
+    rows = opinion_tables.values(found.opinions)["consensus"]
+    assert [row.margin for row in rows] == ["±10 %", "1/1.02 to 1.02"]
+    assert [[cell.apart for cell in row.cells] for row in rows] == [[False, True, False]] * 2
+    page = report.write_report(found, tmp_path).read_text(encoding="utf-8")
+    assert page.count("<b>stands apart</b>") == 2 and "off by about half of its distance" in page
+    assert (tmp_path / "report.md").read_text(encoding="utf-8").count(", stands apart |") == 2
+    written = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))["consensus"]
+    assert {(one["kind"], one["margin"]) for one in written} == {("relative", 0.1), ("ratio", 1.02)}
+    assert {one["engine"] for one in written if one["stands_apart"]} == {"liggghts"}
 
 
 def test_opinions_are_made_once(three):

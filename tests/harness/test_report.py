@@ -11,7 +11,7 @@ import synthetic
 from rich.console import Console
 
 from crossdem.adapters import files
-from crossdem.compare import quantities, report, summary
+from crossdem.compare import quantities, report, summary, wording
 from crossdem.compare.colours import engine_styles
 from crossdem.compare.comparison import compare_runs
 from crossdem.compare.ensemble import Ensemble
@@ -84,6 +84,23 @@ def test_the_page_says_outcome_interval_p_and_packings_of_each_pair_and_why(tmp_
         assert "2 packings can only raise an alarm" in text
     assert "never counts as agreement" in shown
     assert html.count('<span class="outcome inconclusive">inconclusive</span> in 1 of 1') == 3
+
+
+def test_each_pair_shows_the_alarm_band_of_its_own_scatter(tmp_path):
+    """The scatter is that of the calmer engine, and yade is calm."""
+    run_case = synthetic.case()
+    runs = [
+        synthetic.dataset(run_case, engine, seed, factor=factor)
+        for engine, factors in zip(ENGINES, [(1.0, 1.3), (1.0, 1.3), (1.0, 1.0)])
+        for seed, factor in enumerate(factors, start=1)
+    ]
+    comparison = compare_runs(run_case, runs)
+    bands = [wording.band(result.check, result.alarm) for result in comparison.results]
+    assert len(set(bands)) == 2
+    html, markdown = written(comparison, tmp_path)
+    for text in (Page(html).text.replace("\xa0", " "), markdown):
+        shown = [text.count(f"the alarm band of 2 packings, {band};") for band in bands]
+        assert shown == [bands.count(band) for band in bands]
 
 
 def twins(engine, run_case):
