@@ -7,6 +7,7 @@ import pytest
 from paired_tables import table
 
 from crossdem.compare.quantities import QUANTITIES
+from crossdem.compare.recorded import RECORDS, Record
 from crossdem.compare.theory import INSIDE, OPEN, OUTSIDE, WINDOWS, opinions
 
 BEARING, EXPONENT = WINDOWS
@@ -40,6 +41,23 @@ def test_the_windows_are_of_quantities_and_enclose_what_their_source_says():
     assert "13 to 18" in BEARING.source and BEARING.low < n_q[0] < n_q[1] < BEARING.high
     assert n_q[0] / BEARING.low == pytest.approx(2, abs=0.2)
     assert BEARING.high / n_q[1] == pytest.approx(1.4, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    "factor, word", [(0.5, OUTSIDE), (0.9, INSIDE), (1.0, INSIDE), (1.1, INSIDE), (2.0, OUTSIDE)]
+)
+def test_of_the_recorded_runs_half_and_twice_the_resistance_are_found_and_a_tenth_is_not(
+    recorded, factor, word
+):
+    endpoints = recorded.endpoints.assign(bearing_factor=factor * recorded.endpoints.bearing_factor)
+    found = opinions(endpoints, recorded.engines)
+    assert {one.word for one in found if one.window == BEARING} == {word}
+    assert {one.word for one in found if one.window == EXPONENT} == {INSIDE}
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    return Record.read(RECORDS / "bar_penetration" / "default").ensemble
 
 
 @pytest.mark.parametrize(
