@@ -25,10 +25,11 @@ from .ensemble import packing_means
 HALVES = ("one half", "other half")
 STATE = 20000  # of the random numbers, the year of the paper and a zero
 CONFIDENCE = 0.95  # of the intervals of rates
+AT_MARGIN = 1.0  # margins: where either claim is untrue by a hair, and held to equivalence.ALPHA
 TRUE_SHIFT = 1.5  # margins: of the engines that must not pass for equivalent
 POWER = 0.8  # share of splits that a detectable shift is found in
 # [margins]; where the operating characteristic is computed.
-SHIFTS = (0.5, 1.0, TRUE_SHIFT, 2.0, 3.0, 5.0)
+SHIFTS = (0.5, AT_MARGIN, TRUE_SHIFT, 2.0, 3.0, 5.0)
 BISECTIONS = 3  # between two of them, for the smallest detectable shift
 
 Judge = Callable[..., list]  # as checks.evaluate
@@ -47,7 +48,7 @@ class Design:
 
 @dataclass(frozen=True)
 class Rate:
-    """Of events among independent trials; the interval is Wilson's."""
+    """Of events among trials. The interval is Wilson's, of independent trials: of splits, which overlap, it is too narrow."""
 
     events: int
     trials: int
@@ -74,7 +75,9 @@ class Point:
 
 @dataclass(frozen=True)
 class Endpoint:
-    """One check, the only one whose truth is shifted: Holm is at its strictest for it."""
+    """One check, the only one whose truth is shifted: to be DIFFERENT it has to stand alone against Holm's strictest
+    level; to be EQUIVALENT it is held against the mildest, as all others are.
+    """
 
     check: Check
     mean: float  # of the quantity, over all recorded packings

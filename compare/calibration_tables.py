@@ -7,7 +7,18 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from .calibration import CONFIDENCE, POWER, STATE, TRUE_SHIFT, Calibration, Endpoint, Rate
+from .calibration import (
+    AT_MARGIN,
+    CONFIDENCE,
+    POWER,
+    SHIFTS,
+    STATE,
+    TRUE_SHIFT,
+    Calibration,
+    Endpoint,
+    Rate,
+)
+from .checks import SEEDS_FOR_INTERVAL
 from .record import plain
 from .wording import plural
 
@@ -18,6 +29,8 @@ ENDPOINT_TITLES = (
     "check",
     "packings x runs",
     "EQUIVALENT when equal",
+    "EQUIVALENT at the margin",
+    "DIFFERENT at the margin",
     f"EQUIVALENT at {TRUE_SHIFT:g} margins",
     f"DIFFERENT at {TRUE_SHIFT:g} margins",
     f"found in {100 * POWER:.0f} %: margins",
@@ -33,12 +46,19 @@ def misses(found: Sequence[Calibration]) -> list[str]:
             said = f"{rate(one.false_different)} of comparisons of equal codes end with DIFFERENT"
             lines.append(f"{one.design}: {said}; at most {percent(MOST_FALSE_DIFFERENT)} may")
         for endpoint in one.endpoints:
+            title = endpoint.check.quantity.title
             passed = endpoint.at(TRUE_SHIFT).equivalent
             if passed.share > MOST_FALSE_EQUIVALENT:
-                title = endpoint.check.quantity.title
                 said = f"{title} passes for EQUIVALENT in {rate(passed)} at a true shift of"
                 most = percent(MOST_FALSE_EQUIVALENT)
                 lines.append(f"{one.design}: {said} {TRUE_SHIFT:g} margins; at most {most} may")
+            if one.design.packings < SEEDS_FOR_INTERVAL:
+                continue
+            if not endpoint.at(0.0).equivalent.events:
+                lines.append(f"{one.design}: {title} of equal codes is never EQUIVALENT")
+            if endpoint.detectable is None:
+                said = f"{title} is not DIFFERENT in {percent(POWER)} at any true shift"
+                lines.append(f"{one.design}: {said} up to {max(SHIFTS):g} margins")
     return lines
 
 
@@ -69,12 +89,14 @@ def endpoint_rows(found: Sequence[Calibration]) -> list[tuple[str, ...]]:
     for number in range(len(found[0].endpoints)):
         for one in found:
             endpoint = one.endpoints[number]
-            shifted = endpoint.at(TRUE_SHIFT)
+            at_margin, shifted = endpoint.at(AT_MARGIN), endpoint.at(TRUE_SHIFT)
             rows.append(
                 (
                     f"{endpoint.check.quantity.title} {margin(endpoint)}",
                     str(one.design),
                     rate(endpoint.at(0.0).equivalent),
+                    rate(at_margin.equivalent),
+                    rate(at_margin.different),
                     rate(shifted.equivalent),
                     rate(shifted.different),
                     "above all tried"
@@ -189,6 +211,8 @@ def _design(one: Calibration) -> dict:
                 "kind": endpoint.check.kind,
                 "margin": endpoint.check.margin,
                 "equivalent_when_equal": _rate(endpoint.at(0.0).equivalent),
+                "equivalent_at_margin": _rate(endpoint.at(AT_MARGIN).equivalent),
+                "different_at_margin": _rate(endpoint.at(AT_MARGIN).different),
                 "false_equivalent": _rate(endpoint.at(TRUE_SHIFT).equivalent),
                 "detectable_margins": endpoint.detectable,
             }

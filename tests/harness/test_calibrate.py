@@ -13,8 +13,9 @@ from crossdem import ExitCode
 from crossdem.compare import calibration, calibration_command
 from crossdem.compare.calibration import HALVES, TRUE_SHIFT, Design, Rate, calibrate, dealt, shifted
 from crossdem.compare.calibration_command import calibrate_case, calibrated
+from crossdem.compare import calibration_tables as tables
 from crossdem.compare.calibration_tables import misses, table
-from crossdem.compare.checks import DIFFERENT, EQUIVALENT, Check, evaluate
+from crossdem.compare.checks import DIFFERENT, EQUIVALENT, INCONCLUSIVE, Check, evaluate
 from crossdem.compare.quantities import QUANTITIES
 
 SCATTER_N = 0.03  # of a run about the mean of its packing
@@ -113,7 +114,15 @@ def says(outcome):
 
 
 @pytest.mark.parametrize(
-    "outcome, told", [(DIFFERENT, "end with DIFFERENT"), (EQUIVALENT, "passes for EQUIVALENT")]
+    "outcome, told",
+    [
+        (DIFFERENT, "end with DIFFERENT"),
+        (DIFFERENT, "never EQUIVALENT"),
+        (EQUIVALENT, "passes for EQUIVALENT"),
+        (EQUIVALENT, "not DIFFERENT in 80 % at any true shift up to 5 margins"),
+        (INCONCLUSIVE, "never EQUIVALENT"),
+        (INCONCLUSIVE, "not DIFFERENT in 80 % at any true shift up to 5 margins"),
+    ],
 )
 def test_a_judge_that_says_the_same_of_everything_misses_its_target(outcome, told):
     checks, runs, design = checks_of(MEAN_RESISTANCE), runs_of(20), Design(16, 1)
@@ -131,10 +140,17 @@ def test_a_judge_that_takes_one_half_for_both_is_told():
 
     checks, runs, design = checks_of(MEAN_RESISTANCE), runs_of(20), Design(16, 1)
     found = calibrate(checks, runs, design, dealt(runs, design, 20), judge=judge)
-    assert misses([found]) and found.endpoints[0].detectable is None
+    assert found.endpoints[0].detectable is None
+    assert [line for line in misses([found]) if "passes for EQUIVALENT" in line]
 
 
-def test_no_alarm_of_few_packings_is_no_detectable_shift():
+def test_few_packings_that_decide_nothing_miss_no_target():
+    checks, runs, design = checks_of(MEAN_RESISTANCE), runs_of(20), Design(4, 1)
+    found = calibrate(checks, runs, design, dealt(runs, design, 20), judge=says(INCONCLUSIVE))
+    assert not misses([found])
+
+
+def test_none_of_200_is_a_rate_of_at_most_2_percent():
     rate = Rate(0, 200)
     assert rate.share == 0 and rate.interval[1] == pytest.approx(0.0188, abs=2e-4)
 
@@ -180,5 +196,13 @@ def test_a_missed_target_ends_with_1(eight_twins, tmp_path, monkeypatch):
 def test_the_table_counts_splits():
     checks, runs, design = checks_of(MEAN_RESISTANCE), runs_of(20), Design(16, 1)
     found = calibrate(checks, runs, design, dealt(runs, design, 20))
+    (check,) = tables.record([found], 20)["designs"][0]["checks"]
+    at_margin = found.endpoints[0].at(1.0)
+    assert check["equivalent_at_margin"]["events"] == at_margin.equivalent.events
+    assert check["different_at_margin"]["events"] == at_margin.different.events
+    (row,) = tables.endpoint_rows([found])
+    assert dict(zip(tables.ENDPOINT_TITLES, row))["EQUIVALENT at the margin"] == tables.rate(
+        at_margin.equivalent
+    )
     rows = table([found])
     assert (rows["splits"] == 20).all() and rows["shift_margins"].is_monotonic_increasing
