@@ -75,9 +75,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Endpoint:
-    """One check, the only one whose truth is shifted: to be DIFFERENT it has to stand alone against Holm's strictest
-    level; to be EQUIVALENT it is held against the mildest, as all others are.
-    """
+    """One check, the only one whose truth is shifted: Holm is at its strictest for DIFFERENT, at its mildest for EQUIVALENT."""
 
     check: Check
     mean: float  # of the quantity, over all recorded packings

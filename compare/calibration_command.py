@@ -18,6 +18,7 @@ from .calibration import Calibration, Design, calibrate, dealt
 from .calibration_report import print_calibration, write_calibration
 from .calibration_tables import misses
 from .checks import Check
+from .ensemble import of_engine
 from .recorded import Record
 
 # Of the tiers; "nightly" also with the packings alone, for what twins are worth.
@@ -30,7 +31,7 @@ def calibrate_case(
     checks = Check.of_case(case.resolved)
     if not checks:
         raise CaseError([f"{case.file_name}: check: there is none to be judged"])
-    runs = native_runs(recorded)
+    runs = of_engine(recorded.ensemble.endpoints, REFERENCE)
     found = calibrated(checks, runs, splits, jobs, DESIGNS)
     for design in DESIGNS:
         if design not in [one.design for one in found]:
@@ -46,12 +47,6 @@ def calibrate_case(
     if misses(found):
         return ExitCode.DIFFERS
     return ExitCode.AGREES if len(found) == len(DESIGNS) else ExitCode.INCONCLUSIVE
-
-
-def native_runs(recorded: Record) -> pd.DataFrame:
-    """Endpoints of the recorded native runs, indexed by seed and twin."""
-    endpoints = recorded.ensemble.endpoints
-    return endpoints[endpoints.index.get_level_values("engine") == REFERENCE].droplevel("engine")
 
 
 def calibrated(

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from . import equivalence
+from .ensemble import of_engine
 from .equivalence import ALPHA, MOST_SEEDS
 from .margins import Check, check_faults
 from .outcomes import DIFFERENT, EQUIVALENT, INCONCLUSIVE, NOT_COMPARABLE
@@ -127,13 +128,15 @@ def evaluate(
     """
     if not checks:
         return []
-    runs = [_packings_of(endpoints, engine, checks) for engine in pair]
-    seeds, *rows = np.intersect1d(*(seeds for seeds, _ in runs), return_indices=True)
+    names = [check.quantity.name for check in checks]
+    runs = [of_engine(endpoints, engine)[names] for engine in pair]
+    seeds, *rows = np.intersect1d(*(one.index for one in runs), return_indices=True)
     obstacles = tuple(obstacles) or (() if len(seeds) else ("no packing that both engines ran",))
-    paired = [values[of_engine] for (_, values), of_engine in zip(runs, rows)]
+    values = [one.to_numpy(dtype=float) for one in runs]
+    first, second = (one[shared].T for one, shared in zip(values, rows))
     with np.errstate(all="ignore"):  # what has no value becomes NaN, and is said
         differences = np.column_stack(
-            [check.differences(a, b) for check, a, b in zip(checks, paired[0].T, paired[1].T)]
+            [check.differences(a, b) for check, a, b in zip(checks, first, second)]
         )
     margins = np.array([check.on_scale(check.margin) for check in checks])
     found = equivalence.find(differences, margins)
@@ -149,7 +152,7 @@ def evaluate(
                 pair=pair,
                 outcome=NOT_COMPARABLE,
                 seeds=tuple(seeds.tolist()),
-                means=tuple(_mean(values[:, number]) for _, values in runs),
+                means=tuple(_mean(one[:, number]) for one in values),
                 difference=float(found.mean[number]),
                 interval=None
                 if len(seeds) < 2
@@ -157,7 +160,7 @@ def evaluate(
                 p_equivalent=float(found.p_equivalent[number]),
                 p_different=float(found.p_different[number]),
                 family=len(checks),
-                scatter=check.scatter(*(values[:, number] for _, values in runs)),
+                scatter=check.scatter(*(one[:, number] for one in values)),
                 difference_scatter=float(scatters[number]),
                 level=float(levels[number]),
                 obstacles=obstacles + _valueless(check, differences[:, number]),
@@ -189,16 +192,6 @@ def _outcome(result: CheckResult) -> str:
     if result.beyond and result.p_different <= ALPHA:
         return DIFFERENT
     return INCONCLUSIVE
-
-
-def _packings_of(
-    endpoints: pd.DataFrame, engine: str, checks: Sequence[Check]
-) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) seeds of the engine's packings and (n, checks) their values; n = 0 for an engine without runs."""
-    rows = endpoints.index.get_level_values("engine") == engine
-    seeds = endpoints.index.get_level_values("seed")[rows].to_numpy()
-    names = [check.quantity.name for check in checks]
-    return seeds, endpoints[names].to_numpy(dtype=float)[rows]
 
 
 def _mean(values: np.ndarray) -> float:

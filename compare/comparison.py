@@ -15,7 +15,7 @@ from crossdem.adapters.engines import ENGINES
 
 from .answers import answer_faults
 from .checks import Check, CheckResult, check_faults, evaluate
-from .ensemble import Ensemble, packing_means
+from .ensemble import Ensemble, of_engine, packing_means
 from .horizon import Horizon
 from .intake import Intake, failed_gates, obstacles
 from .opinions import Opinions
@@ -70,8 +70,7 @@ class Comparison:
 
     def packings(self, engine: str) -> pd.DataFrame:
         """The mean resistance [N] per cm of depth, a row for each of the engine's packings."""
-        profiles = self.ensemble.profiles
-        return packing_means(profiles[profiles.index.get_level_values("engine") == engine])
+        return of_engine(packing_means(self.ensemble.profiles), engine)
 
 
 def compare_runs(
@@ -126,7 +125,7 @@ def compare_runs(
         failed,
         failed_gates(ensemble.manifests, engines),
         horizon.strays if horizon else (),
-        ensemble.endpoints.groupby(level=["engine", "seed"]).size().tolist() or [1],
+        ensemble.runs_each,
     )
     return Comparison(
         case,

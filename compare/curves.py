@@ -53,19 +53,10 @@ def compare_curves(
     return CurveComparison(pair, seeds, energy_test(first, second), table, identical)
 
 
-def energy_distance(first: np.ndarray, second: np.ndarray) -> float:
-    """Energy distance of two samples of curves, >= 0: E = 2 mean |a - b| - mean |a - a'| - mean |b - b'|.
-
-    Rows are curves; |.| is the Euclidean distance. It is 0 only for equal distributions (Szekely and Rizzo 2013).
-    """
-    return float(
-        2 * cdist(first, second).mean() - cdist(first, first).mean() - cdist(second, second).mean()
-    )
-
-
 def energy_test(first: np.ndarray, second: np.ndarray) -> float:
-    """p value of the energy distance of paired samples, the pairs swapped.
+    """p value of the energy distance of paired samples of curves, a row each, the pairs swapped.
 
+    E = 2 mean |a - b| - mean |a - a'| - mean |b - b'|, Euclidean, is 0 only for equal distributions (Szekely and Rizzo 2013).
     With s_i = -1 where pair i is swapped, E = -s M s / n^2, M_ij = |a_i - a_j| - |a_i - b_j| - |b_i - a_j| + |b_i - b_j|.
     """
     across = cdist(first, second)

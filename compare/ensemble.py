@@ -46,6 +46,11 @@ class Ensemble:
     def engines(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(engine for engine, _, _ in self.manifests))
 
+    @property
+    def runs_each(self) -> list[int]:
+        """How many runs each packing of each engine has: the packing as it was settled, and its twins."""
+        return self.endpoints.groupby(level=PACKING).size().tolist()
+
     def joined(self, other: "Ensemble") -> "Ensemble":
         """The runs of both, which must have none in common."""
         tables = (
@@ -59,6 +64,11 @@ class Ensemble:
         runs = list(runs)
         tables = (getattr(self, name).loc[runs] for name in ("endpoints", "profiles", "fields"))
         return Ensemble(*tables, {run: self.manifests[run] for run in runs})
+
+
+def of_engine(table: pd.DataFrame, engine: str) -> pd.DataFrame:
+    """The rows of one engine, without that level of their index; none for an engine without runs."""
+    return table[table.index.get_level_values("engine") == engine].droplevel("engine")
 
 
 def packing_means(table: pd.DataFrame) -> pd.DataFrame:

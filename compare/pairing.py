@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from .ensemble import PACKING, Ensemble, packing_means
+from .ensemble import PACKING, Ensemble, of_engine, packing_means
 
 # With 5 packings 2 of the 32 ways to swap two codes within them look at least as unlike as the runs do: p cannot fall
 # below 0.06, and nothing could ever be found. With 6 it can fall to 0.03.
@@ -40,7 +40,7 @@ def sound(ensemble: Ensemble) -> Ensemble:
 
 def shared_means(table: pd.DataFrame, engines: Sequence[str]) -> dict[str, pd.DataFrame]:
     """For each of `engines` the packing means of `table` by seed, over the (seed, twin) that all of them ran."""
-    runs = {engine: _runs_of(table, engine) for engine in engines}
+    runs = {engine: of_engine(table, engine) for engine in engines}
     shared = sorted(set.intersection(*(set(rows.index) for rows in runs.values())))
     means = {}
     for engine, rows in runs.items():
@@ -67,8 +67,3 @@ def swap_test(packings: int, statistic: Callable[[np.ndarray], np.ndarray]):
         alternative="greater",
         random_state=SEED,
     )
-
-
-def _runs_of(table: pd.DataFrame, engine: str) -> pd.DataFrame:
-    """Rows of `table` by (seed, twin)."""
-    return table[table.index.get_level_values("engine") == engine].droplevel("engine")

@@ -34,14 +34,6 @@ def resistance_profile(resistance: pd.DataFrame, bin_depth_m: float = 0.01) -> p
     return profile.rename_axis("depth_m").rename(columns={"mean": "mean_N", "std": "scatter_N"})
 
 
-def profile_over_seeds(profiles: list[pd.DataFrame]) -> pd.DataFrame:
-    """Mean over the runs of one engine [N], and scatter from run to run (standard deviation, NaN for one run) [N]."""
-    means = pd.concat([profile["mean_N"] for profile in profiles], axis="columns")
-    return pd.DataFrame(
-        {"mean_N": means.mean(axis="columns"), "scatter_N": means.std(axis="columns", ddof=1)}
-    )
-
-
 def mean_resistance_N(resistance: pd.DataFrame) -> float:
     """Mean of the resistance [N] over the deep window."""
     return float(deep_window(resistance)["force_y_N"].mean())

@@ -11,7 +11,6 @@ import pandas as pd
 from . import resistance, wording
 from .checks import DIFFERENT, EQUIVALENT, INCONCLUSIVE, NOT_COMPARABLE, CheckResult, by_check
 from .comparison import Comparison
-from .ensemble import PACKING
 from .quantities import QUANTITIES
 from .verdict import seeds_text
 
@@ -70,7 +69,7 @@ def headlines(comparison: Comparison) -> list[Headline]:
         Headline(
             wording.packings(
                 verdict.seeds if comparison.results else len(comparison.seeds),
-                runs_each(comparison),
+                comparison.ensemble.runs_each,
             ),
             "behind this verdict",
             _needed(comparison),
@@ -99,11 +98,6 @@ def _largest_difference(comparison: Comparison) -> Headline:
     shown = wording.signed_difference(worst.check, worst.difference)
     first, second = worst.pair
     return Headline(shown, label, f"{first} against {second}; margin {wording.margin(worst.check)}")
-
-
-def runs_each(comparison: Comparison) -> list[int]:
-    """How many runs each packing of each engine has: the packing as it was settled, and its twins."""
-    return comparison.ensemble.endpoints.groupby(level=PACKING).size().tolist()
 
 
 def check_blocks(comparison: Comparison) -> list[CheckBlock]:

@@ -17,9 +17,10 @@ from crossdem.adapters.engines import get_engine
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.run_folder import RunRequest
 from crossdem.adapters.workflow.ensemble import run_ensemble
-from crossdem.compare.calibration_command import DESIGNS, calibrated, native_runs
+from crossdem.compare.calibration_command import DESIGNS, calibrated
 from crossdem.compare.calibration_tables import misses, record
 from crossdem.compare.checks import Check
+from crossdem.compare.ensemble import of_engine
 from crossdem.compare.recorded import SUMS, Record, find_record
 from crossdem.compare.reproduced import difference, packing_of
 
@@ -60,9 +61,8 @@ def test_the_records_are_of_the_case_as_it_stands():
 
 def test_the_judge_is_as_good_as_its_calibration_says(case, recorded):
     committed = json.loads(CALIBRATION.read_text(encoding="utf-8"), parse_float=_rounded)
-    found = calibrated(
-        Check.of_case(case.resolved), native_runs(recorded), committed["splits"], None, DESIGNS
-    )
+    runs = of_engine(recorded.ensemble.endpoints, REFERENCE)
+    found = calibrated(Check.of_case(case.resolved), runs, committed["splits"], None, DESIGNS)
     text = json.dumps(record(found, committed["splits"]))
     assert json.loads(text, parse_float=_rounded)["designs"] == committed["designs"]
     assert not misses(found)

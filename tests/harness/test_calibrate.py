@@ -11,10 +11,9 @@ from synthetic import MEAN_RESISTANCE, case
 
 from crossdem import ExitCode
 from crossdem.compare import calibration, calibration_command
+from crossdem.compare import calibration_tables as tables
 from crossdem.compare.calibration import HALVES, TRUE_SHIFT, Design, Rate, calibrate, dealt, shifted
 from crossdem.compare.calibration_command import calibrate_case, calibrated
-from crossdem.compare import calibration_tables as tables
-from crossdem.compare.calibration_tables import misses, table
 from crossdem.compare.checks import DIFFERENT, EQUIVALENT, INCONCLUSIVE, Check, evaluate
 from crossdem.compare.quantities import QUANTITIES
 
@@ -127,7 +126,7 @@ def says(outcome):
 def test_a_judge_that_says_the_same_of_everything_misses_its_target(outcome, told):
     checks, runs, design = checks_of(MEAN_RESISTANCE), runs_of(20), Design(16, 1)
     found = calibrate(checks, runs, design, dealt(runs, design, 20), judge=says(outcome))
-    assert [line for line in misses([found]) if told in line]
+    assert [line for line in tables.misses([found]) if told in line]
 
 
 def test_a_judge_that_takes_one_half_for_both_is_told():
@@ -141,13 +140,13 @@ def test_a_judge_that_takes_one_half_for_both_is_told():
     checks, runs, design = checks_of(MEAN_RESISTANCE), runs_of(20), Design(16, 1)
     found = calibrate(checks, runs, design, dealt(runs, design, 20), judge=judge)
     assert found.endpoints[0].detectable is None
-    assert [line for line in misses([found]) if "passes for EQUIVALENT" in line]
+    assert [line for line in tables.misses([found]) if "passes for EQUIVALENT" in line]
 
 
 def test_few_packings_that_decide_nothing_miss_no_target():
     checks, runs, design = checks_of(MEAN_RESISTANCE), runs_of(20), Design(4, 1)
     found = calibrate(checks, runs, design, dealt(runs, design, 20), judge=says(INCONCLUSIVE))
-    assert not misses([found])
+    assert not tables.misses([found])
 
 
 def test_none_of_200_is_a_rate_of_at_most_2_percent():
@@ -168,7 +167,7 @@ def test_the_page_the_picture_and_the_tables_are_written(
     eight_twins, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.setattr(calibration_command, "DESIGNS", (Design(6, 1), Design(6, 2)))
-    monkeypatch.setattr(calibration_command, "native_runs", lambda recorded: runs_of(12))
+    monkeypatch.setattr(calibration_command, "of_engine", lambda *_: runs_of(12))
     ended = calibrate_case(case(), eight_twins, 20, tmp_path / "calibrate", 1)
     assert ended == ExitCode.AGREES
     names = sorted(path.name for path in (tmp_path / "calibrate").iterdir())
@@ -184,7 +183,7 @@ def test_the_page_the_picture_and_the_tables_are_written(
 
 def test_a_missed_target_ends_with_1(eight_twins, tmp_path, monkeypatch):
     monkeypatch.setattr(calibration_command, "DESIGNS", (Design(6, 1),))
-    monkeypatch.setattr(calibration_command, "native_runs", lambda recorded: runs_of(12))
+    monkeypatch.setattr(calibration_command, "of_engine", lambda *_: runs_of(12))
     monkeypatch.setattr(
         calibration_command,
         "calibrate",
@@ -204,5 +203,5 @@ def test_the_table_counts_splits():
     assert dict(zip(tables.ENDPOINT_TITLES, row))["EQUIVALENT at the margin"] == tables.rate(
         at_margin.equivalent
     )
-    rows = table([found])
+    rows = tables.table([found])
     assert (rows["splits"] == 20).all() and rows["shift_margins"].is_monotonic_increasing

@@ -27,14 +27,6 @@ def test_a_depth_at_the_border_of_two_bins_belongs_to_the_deeper_despite_round_o
     assert list(profile["count"]) == [100] * 8 + [101]
 
 
-def test_the_scatter_over_seeds_is_that_of_the_runs_not_of_the_samples():
-    profiles = [resistance.resistance_profile(linear(slope)) for slope in (10, 20)]
-    over_seeds = resistance.profile_over_seeds(profiles)
-    means_N = [profile["mean_N"].iloc[0] for profile in profiles]
-    assert over_seeds["mean_N"].iloc[0] == pytest.approx(np.mean(means_N))
-    assert over_seeds["scatter_N"].iloc[0] == pytest.approx(np.std(means_N, ddof=1))
-
-
 def test_the_mean_resistance_of_a_straight_line_is_that_at_the_middle_of_3_to_9_cm():
     assert resistance.mean_resistance_N(linear()) == pytest.approx(16 * 0.06)
 

@@ -48,8 +48,8 @@ MUTANTS = [
         "test_checks.py",
         (
             "paired_by_place",
-            "seeds, *rows = np.intersect1d(*(seeds for seeds, _ in runs), return_indices=True)",
-            "seeds = np.intersect1d(*(seeds for seeds, _ in runs)); rows = [np.arange(len(seeds))] * 2",
+            "seeds, *rows = np.intersect1d(*(one.index for one in runs), return_indices=True)",
+            "seeds = np.intersect1d(*(one.index for one in runs)); rows = [np.arange(len(seeds))] * 2",
         ),
         ("first_column_for_all", "[check.quantity.name for", "[checks[0].quantity.name for"),
         (
@@ -60,7 +60,11 @@ MUTANTS = [
         ("alarm_without_abs", "abs(self.difference) > self.alarm", "self.difference > self.alarm"),
         ("alarm_within_the_margin", "return self.margin + ALARM", "return ALARM"),
         ("alarm_of_one_packing", "math.sqrt(2 / len(self.seeds))", "math.sqrt(2)"),
-        ("alarm_instead_of_the_interval", "if not 0 < len(self.seeds) < SEEDS", "if not 0 < 1 < SEEDS"),
+        (
+            "alarm_instead_of_the_interval",
+            "if not 0 < len(self.seeds) < SEEDS",
+            "if not 0 < 1 < SEEDS",
+        ),
         ("beyond_with_the_wrong_sign", "[1] < -self.margin\n", "[1] < self.margin\n"),
         ("within_below_only", "<= self.interval[1] < self.margin", "<= self.interval[1]"),
         ("chance_among_many", "result.within and result.p_equivalent <= ALPHA", "result.within"),
