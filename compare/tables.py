@@ -82,7 +82,7 @@ def _needed(comparison: Comparison) -> str:
         return "no pair was checked"
     if all(result.outcome != INCONCLUSIVE for result in comparison.results):
         return "no check is open"
-    return f"for equivalence open checks need {seeds_text(comparison.verdict.seeds_needed)}"
+    return f"if the engines are equal, the open checks need {seeds_text(comparison.verdict.seeds_needed)}"
 
 
 def _largest_difference(comparison: Comparison) -> Headline:

@@ -10,7 +10,7 @@ import synthetic
 from scipy import stats
 
 from crossdem import ExitCode
-from crossdem.compare import checks, verdict
+from crossdem.compare import checks, tables, verdict
 from crossdem.compare.comparison import ComparisonError, compare_runs
 from crossdem.compare.ensemble import Ensemble
 from crossdem.compare.margins import Check
@@ -50,11 +50,13 @@ def test_identical_runs_of_enough_seeds_agree():
 
 
 def test_two_noisy_seeds_are_consistent_and_it_says_how_many_seeds_a_statement_needs():
-    said = compare_runs(RUN_CASE, runs(noise=0.3)).verdict
+    comparison = compare_runs(RUN_CASE, runs(noise=0.3))
+    said = comparison.verdict
     assert (said.word, said.exit_code) == (verdict.CONSISTENT, ExitCode.AGREES)
     assert (said.seeds, said.seeds_needed) == (2, 16)
     assert "no statement of equivalence" in said.sentence and "16 packings" in said.sentence
     assert "--seeds 16" in said.next_step
+    assert tables.headlines(comparison)[-1].note.endswith("the open checks need 16 packings")
 
 
 def test_a_shifted_resistance_differs():
@@ -288,4 +290,5 @@ def test_datasets_are_read_one_by_one():
 def test_enough_packings_that_show_every_check_equivalent_agree_whatever_was_planned():
     comparison = compare_runs(RUN_CASE, runs(seeds=6))
     assert comparison.results[0].seeds_needed == 16
+    assert tables.headlines(comparison)[-1].note == "no check is open"
     assert (comparison.verdict.word, comparison.verdict.seeds) == (verdict.AGREES, 6)
