@@ -172,7 +172,7 @@ def _all(checked: int) -> str:
 def _consistent(engines, results, behind, needed) -> tuple[str, str]:
     shown = sum(result.outcome == checks.EQUIVALENT for result in results)
     sentence = (
-        f"{behind} of {listed(engines)} show no difference beyond a margin, and every gate passed. This is no "
+        f"{behind} of {listed(engines)} show no check to be DIFFERENT, and every gate passed. This is no "
         f"statement of equivalence: {shown} of {plural(len(results), 'check')} {'is' if shown == 1 else 'are'} EQUIVALENT, "
         f"and for the others it takes about {seeds_text(needed)}, if the engines are equal."
     )
