@@ -20,7 +20,7 @@ from .calibration import (
 )
 from .checks import SEEDS_FOR_INTERVAL
 from .record import plain
-from .wording import plural
+from .wording import margin, plural, quantity_value
 
 MOST_FALSE_DIFFERENT = 0.02  # of comparisons of equal codes, with any check that says different
 MOST_FALSE_EQUIVALENT = 0.05  # of codes that truly differ by TRUE_SHIFT margins, for each check
@@ -92,7 +92,7 @@ def endpoint_rows(found: Sequence[Calibration]) -> list[tuple[str, ...]]:
             at_margin, shifted = endpoint.at(AT_MARGIN), endpoint.at(TRUE_SHIFT)
             rows.append(
                 (
-                    f"{endpoint.check.quantity.title} {margin(endpoint)}",
+                    f"{endpoint.check.quantity.title} {margin(endpoint.check)}",
                     str(one.design),
                     rate(endpoint.at(0.0).equivalent),
                     rate(at_margin.equivalent),
@@ -119,7 +119,7 @@ def brief_rows(found: Sequence[Calibration]) -> list[list[str]]:
     return [
         [
             endpoint.check.quantity.title,
-            margin(endpoint),
+            margin(endpoint.check),
             *(_brief(one.endpoints[number]) for one in found),
         ]
         for number, endpoint in enumerate(found[0].endpoints)
@@ -141,28 +141,19 @@ def percent(share: float) -> str:
     return f"{100 * share:.3g} %"
 
 
-def margin(endpoint: Endpoint) -> str:
-    check = endpoint.check
-    if check.kind == "relative":
-        return f"± {percent(check.margin)}"
-    if check.kind == "ratio":
-        return f"× {check.margin:g}"
-    return f"± {check.margin:.3g} {check.quantity.unit}".rstrip()
-
-
 def detectable(endpoint: Endpoint) -> str:
     """The smallest shift that is found, as the case states margins, and in the quantity's unit."""
     if endpoint.detectable is None:
         return ""
     check = endpoint.check
     shift = endpoint.detectable * check.on_scale(check.margin)
-    unit = check.quantity.unit
+    if check.kind == "absolute":
+        return quantity_value(check.quantity, shift)
     if check.kind == "relative":
-        return f"{percent(shift)}: {abs(shift * endpoint.mean):.3g} {unit}".rstrip()
-    if check.kind == "ratio":
-        by = abs(endpoint.mean) * (math.exp(shift) - 1)
-        return f"× {math.exp(shift):.3g}: {by:.3g} {unit}".rstrip()
-    return f"{shift:.3g} {unit}".rstrip()
+        said, by = percent(shift), abs(shift * endpoint.mean)
+    else:
+        said, by = f"× {math.exp(shift):.3g}", abs(endpoint.mean) * (math.exp(shift) - 1)
+    return f"{said}: {quantity_value(check.quantity, by)}"
 
 
 def table(found: Sequence[Calibration]) -> pd.DataFrame:

@@ -59,6 +59,7 @@ def main() -> None:
     chosen = parser.parse_args()
     if not chosen.pages:
         table = matrix(chosen.work, chosen.sound, chosen.packings, chosen.jobs)
+        chosen.docs.mkdir(parents=True, exist_ok=True)
         table.to_csv(chosen.docs / "detection.csv", index=False)
     table = read_table(chosen.docs)
     (chosen.docs / "detection.md").write_text(page(table), encoding="utf-8")
