@@ -18,10 +18,9 @@ from .ensemble import Ensemble
 from .explain import explain_case
 from .horizon import Horizon
 from .horizon_runs import find_horizon, horizon_of_runs
-from .intake import native_first
 from .record_command import plans_of, record_case
 from .recorded import find_record
-from .replay import gated, replayed, restore_packings
+from .replay import replayed, restore_packings
 from .runs import Runs, cores, run_engines, write_inputs
 from .stability import FAILED
 from .stability_runs import map_stability
@@ -52,8 +51,7 @@ def _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, f
         if engines:
             restore_packings(case, record, seeds, workspace)
             runs, found = _run(case, engines, seeds, workspace, jobs, twins, profile, ranks)
-    datasets = gated(map(Dataset.read, runs.folders), others)
-    return _report(case, datasets, runs, workspace, found, others)
+    return _report(case, map(Dataset.read, runs.folders), runs, workspace, found, others)
 
 
 def _run(case, engines, seeds, workspace, jobs, *ensemble) -> tuple[Runs, Horizon | None]:
@@ -94,7 +92,7 @@ def compare(folders, out) -> ExitCode:
     _needs_bar(case)
     workspace = Workspace(out or Path("results") / f"{case.name}-compare")
     try:
-        return _report(case, map(Dataset.read, native_first(folders)), Runs((), {}), workspace)
+        return _report(case, map(Dataset.read, folders), Runs((), {}), workspace)
     except DatasetError:
         workspace.discard_if_new()
         raise

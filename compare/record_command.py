@@ -15,7 +15,7 @@ from rich.console import Console
 from crossdem import ExitCode, __version__
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
-from crossdem.adapters.gates import REFERENCE, contacts_at_rest
+from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.packing import Packing
 from crossdem.adapters.solver import SolverError, find_solver
 from crossdem.adapters.workspace import Workspace
@@ -23,7 +23,7 @@ from crossdem.adapters.workspace import Workspace
 from .ensemble import RUN, Ensemble
 from .fingerprint import content_sha256, machine_facts
 from .record import libraries
-from .recorded import CONTACTS, CONTENT, DATE, RECORDS, Record
+from .recorded import CONTENT, DATE, RECORDS, Record
 from .recorded_tables import FIELD_DIGITS
 from .runs import Runs, run_engines
 
@@ -101,10 +101,7 @@ def record_of(case: Case, folders: Sequence[Path], plan: Plan, command: str) -> 
     def read() -> Iterator[Dataset]:
         for folder in folders:
             dataset = Dataset.read(folder)
-            facts[dataset.engine, dataset.seed, dataset.twin] = {
-                CONTENT: content_sha256(dataset),
-                CONTACTS: contacts_at_rest(dataset),
-            }
+            facts[dataset.engine, dataset.seed, dataset.twin] = {CONTENT: content_sha256(dataset)}
             if dataset.twin == 0:
                 packings[dataset.seed] = Packing.read(folder / "inputs")
             yield dataset

@@ -25,7 +25,6 @@ from .ensemble import Ensemble
 RECORDS = Path(__file__).resolve().parent.parent / "reference_cases" / "expected"
 SUMS = "SHA256SUMS"
 CONTENT = "content_sha256"  # of a run's manifest as recorded: fingerprint.content_sha256
-CONTACTS = "contacts_at_rest"  # of a run's manifest as recorded: pairs of particles
 DATE = "recorded_utc"  # of a run's manifest as read, from the record's own
 
 
@@ -35,7 +34,7 @@ class RecordError(CaseError):
 
 @dataclass(frozen=True)
 class Record:
-    """Runs of one case. The ensemble's manifests hold CONTENT and CONTACTS beside what a run's manifest holds."""
+    """Runs of one case. The ensemble's manifests hold CONTENT beside what those of an ensemble hold."""
 
     case: Case
     ensemble: Ensemble

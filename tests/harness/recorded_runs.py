@@ -5,11 +5,10 @@ import hashlib
 import pandas as pd
 from synthetic import case, dataset
 
-from crossdem.adapters.gates import contacts_at_rest
 from crossdem.adapters.packing import COLUMNS
 from crossdem.compare.ensemble import Ensemble
 from crossdem.compare.fingerprint import content_sha256, machine_facts
-from crossdem.compare.recorded import CONTACTS, CONTENT, DATE, Record
+from crossdem.compare.recorded import CONTENT, DATE, Record
 
 
 def packing_text(seed):
@@ -43,13 +42,7 @@ def recorded_datasets(run_case, engines=("native", "liggghts"), seeds=2, twins=1
 def record(run_case=None, **which):
     run_case = run_case or case()
     runs = list(recorded_datasets(run_case, **which))
-    facts = {
-        (run.engine, run.seed, run.twin): {
-            CONTENT: content_sha256(run),
-            CONTACTS: contacts_at_rest(run),
-        }
-        for run in runs
-    }
+    facts = {(run.engine, run.seed, run.twin): {CONTENT: content_sha256(run)} for run in runs}
     ensemble = Ensemble.of(runs)
     manifests = {run: about | facts[run] for run, about in ensemble.manifests.items()}
     seeds = sorted({run.seed for run in runs})

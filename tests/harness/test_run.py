@@ -186,39 +186,6 @@ def test_progress_grows_to_one(fake, case, packing, tmp_path):
     assert any(0 < share < 1 and seconds_left > 0 for _, share, seconds_left in told)
 
 
-def test_the_contacts_of_the_others_are_held_against_the_native_run(fake, case, packing, tmp_path):
-    requests = [RunRequest(case, packing, name) for name in ("liggghts", "native")]
-    fake_run, native = (
-        Dataset.read(r.dataset_folder) for r in run_all(requests, tmp_path / "out", 2)
-    )
-    at_rest = native.resistance["contacts"].iloc[0]
-    [gate] = [gate for gate in fake_run.manifest["gates"] if gate["name"] == "contacts_share"]
-    assert gate["value"] == pytest.approx(abs(70 - at_rest) / at_rest)
-    assert f"{at_rest} in the native run" in gate["message"]
-
-
-def test_a_reused_run_gets_the_gate_that_a_later_native_run_allows(fake, case, packing, tmp_path):
-    first = Dataset.read(liggghts(case, packing, tmp_path / "out").dataset_folder)
-    requests = [RunRequest(case, packing, name) for name in ("liggghts", "native")]
-    reused, native = run_all(requests, tmp_path / "out", 2)
-    assert (reused.status, native.status) == ("reused", "done")
-    names = [gate["name"] for gate in Dataset.read(reused.dataset_folder).manifest["gates"]]
-    assert names == ["rest_kinetic_energy_J", "contacts_share", "no_particle_lost"]
-    assert len(first.manifest["gates"]) == 2
-    assert len(fake.process_ids()) == 1
-
-
-def test_a_reused_run_keeps_its_gate_on_contacts_when_it_is_asked_for_without_native(
-    fake, case, packing, tmp_path
-):
-    requests = [RunRequest(case, packing, name) for name in ("liggghts", "native")]
-    before = Dataset.read(run_all(requests, tmp_path / "out", 2)[0].dataset_folder)
-    alone = liggghts(case, packing, tmp_path / "out")
-    assert alone.status == "reused"
-    gates = Dataset.read(alone.dataset_folder).manifest["gates"]
-    assert gates == before.manifest["gates"] and len(gates) == 3
-
-
 def test_ctrl_c_ends_the_engines_and_leaves_no_run(fake, case, packing, tmp_path):
     fake.fault("hang")
     script = f"""

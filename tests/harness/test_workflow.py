@@ -125,10 +125,14 @@ def test_the_contacts_of_the_others_are_held_against_the_native_run(fake, case, 
     assert len(Dataset.read(alone.dataset_folder).manifest["gates"]) == 2
     results = ensemble(case, packings[:1], ["liggghts", "native"], out)
     assert [result.status for result in results] == ["reused", "done"]
+    native = Dataset.read(results[1].dataset_folder)
     gates = Dataset.read(alone.dataset_folder).manifest["gates"]
-    assert (
-        "in the native run" in {gate["name"]: gate["message"] for gate in gates}["contacts_share"]
-    )
+    at_rest = native.resistance["contacts"].iloc[0]
+    [gate] = [gate for gate in gates if gate["name"] == "contacts_share"]
+    assert gate["value"] == pytest.approx(abs(70 - at_rest) / at_rest)
+    assert f"{at_rest} in the native run" in gate["message"]
+    [again] = ensemble(case, packings[:1], ["liggghts"], out)
+    assert Dataset.read(again.dataset_folder).manifest["gates"] == gates and len(gates) == 3
     assert len(fake.process_ids()) == 1
 
 
