@@ -145,6 +145,17 @@ def test_without_snakemake_it_says_how_to_get_it(packings, out, case, monkeypatc
         ensemble(case, packings[:1], ["native"], out)
 
 
+def test_a_profile_of_the_user_changes_nothing_here(case, packings, out, monkeypatch):
+    monkeypatch.setenv("SNAKEMAKE_PROFILE", "mine")
+    [result] = ensemble(case, packings[:1], ["native"], out)
+    assert result.status == "done", result.failure
+
+
+def test_a_folder_that_snakemake_cannot_hand_to_a_cluster_is_refused(case, packings, out):
+    with pytest.raises(WorkflowError, match="with --profile.*choose another with --out"):
+        ensemble(case, packings[:1], ["native"], out, profile="slurm")
+
+
 FRONT = """
 from pathlib import Path
 from crossdem.adapters.case import Case
