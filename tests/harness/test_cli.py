@@ -2,6 +2,7 @@
 
 import fcntl
 import json
+import os
 import signal
 import subprocess
 import time
@@ -9,9 +10,11 @@ from importlib.metadata import version
 
 import pytest
 from command_line import REFERENCE, ROOT, crossdem
+from test_workflow import alive, wait_for
 
 from crossdem import ExitCode, __version__
 from crossdem.adapters.case import load_case
+from crossdem.adapters.solver import find_solver
 
 SMALL = ["particles.count=100", "time.penetration_s=0.2", "time.rest_s=0.1"]
 OVERRIDES = [word for override in SMALL for word in ("--set", override)]
@@ -199,6 +202,25 @@ def test_an_interrupted_run_ends_at_once_and_leaves_nothing_that_looks_complete(
     assert running.returncode == ExitCode.INTERRUPTED
     assert said.strip() == "interrupted"
     assert not list(out.glob("runs/[!.]*"))
+
+
+def test_a_kill_while_settling_leaves_no_solver_and_the_next_call_no_unfinished_packing(tmp_path):
+    solver, mark, out = tmp_path / "solver", tmp_path / "process", tmp_path / "out"
+    settle = (
+        f'[ "$1" = pack ] && {{ echo $$ >"{mark}.new"; mv "{mark}.new" "{mark}"; exec sleep 600; }}'
+    )
+    solver.write_text(f'#!/bin/sh\n{settle}\nexec {find_solver()} "$@"\n')
+    solver.chmod(0o755)
+    command = [ROOT / "crossdem", "run", *QUICK, "--seeds", "1", "--out", out]
+    running = subprocess.Popen(command, env={**os.environ, "CROSSDEM_SOLVER": str(solver)})
+    wait_for(mark.exists)
+    running.kill()
+    running.wait()
+    wait_for(lambda: not alive(int(mark.read_text())), "the solver goes on")
+    assert len(list((out / "packings").glob(".seed1-*"))) == 1
+    ended = crossdem(*command[1:])
+    assert ended.returncode == 0, ended.stderr
+    assert len(list((out / "packings").iterdir())) == 1
 
 
 def test_files_of_the_user_are_not_taken_for_modules_of_the_same_name(tmp_path):
