@@ -13,7 +13,7 @@ from pathlib import Path
 from rich.console import Console
 
 from crossdem import ExitCode, __version__
-from crossdem.adapters.case import Case
+from crossdem.adapters.case import Case, CaseError
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.packing import Packing
@@ -23,7 +23,7 @@ from crossdem.adapters.workspace import Workspace
 from .ensemble import RUN, Ensemble
 from .fingerprint import content_sha256, machine_facts
 from .record import libraries
-from .recorded import CONTENT, DATE, RECORDS, Record
+from .recorded import CONTENT, DATE, RECORDS, SCHEMA_VERSION, Record
 from .recorded_tables import FIELD_DIGITS
 from .runs import Runs, run_engines
 
@@ -57,7 +57,13 @@ def plans_of(
     variant_engines: Sequence[str],
     variant_seeds: int | None,
 ) -> list[Plan]:
-    """Of the case as it stands, then of each of its `variants`, on packings without twins."""
+    """Of the case as it stands, then of each of its `variants`, on packings without twins. Raises CaseError."""
+    if faults := [
+        f"--variant {name}: it becomes the name of a folder; leave out the /"
+        for name in variants
+        if "/" in name
+    ]:
+        raise CaseError(faults)
     more = native_twins if native_twins is not None else twins
     twin_seeds = min(twin_seeds or seeds, seeds)
     plans = [Plan((), tuple(engines), seeds, twins, twin_seeds, max(more, twins))]
@@ -157,7 +163,7 @@ def _refuse_failures(runs: Runs) -> None:
 
 def _manifest(case: Case, ensemble: Ensemble, plan: Plan, command: str) -> dict:
     return {
-        "schema_version": 1,
+        "schema_version": SCHEMA_VERSION,
         "case": {
             "name": case.name,
             "title": case.resolved["title"],

@@ -52,5 +52,5 @@ def record(run_case=None, **which):
         Ensemble(ensemble.endpoints, ensemble.profiles, ensemble.fields, manifests),
         {seed: packing_text(seed) for seed in seeds},
         {seed: about | {"seed": seed} for seed in seeds},
-        {DATE: "2026-01-02T03:04:05+00:00", "machine": machine_facts()},
+        {DATE: "2026-01-02T03:04:05+00:00", "schema_version": 1, "machine": machine_facts()},
     )

@@ -1,5 +1,6 @@
 """The command line on good input: exit codes, output folder, reuse, interruption. Only the native engine runs here."""
 
+import errno
 import fcntl
 import json
 import os
@@ -236,6 +237,18 @@ def test_two_at_a_time_do_not_share_an_output_folder(finished):
         ended = crossdem("run", *QUICK, "--seeds", "1", "--out", finished)
     assert ended.returncode == ExitCode.BAD_INPUT
     assert "another crossdem is writing to it" in ended.stderr
+
+
+def test_what_the_system_refuses_is_no_bug(monkeypatch, capsys):
+    from crossdem.compare import cli, commands
+
+    def full(**_):
+        raise OSError(errno.ENOSPC, "No space left on device", "out/plan.json")
+
+    monkeypatch.setattr(commands, "resolve", full)
+    assert cli.main(["resolve", str(REFERENCE)]) == ExitCode.SYSTEM
+    [line] = capsys.readouterr().err.splitlines()
+    assert "No space left on device: 'out/plan.json'" in line and "repeat the command" in line
 
 
 def test_a_bug_is_called_a_bug(tmp_path, monkeypatch, capsys):
