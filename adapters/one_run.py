@@ -30,6 +30,10 @@ class Limits:
     silent_s: float = 120.0  # without a new sample, at the least
     silent_share: float = 1.0  # of the expected CPU time without a new sample
 
+    def allowed_s(self, expected_s: float) -> float:
+        """Wall time of a run that is expected to take so much CPU time."""
+        return max(self.least_s, self.factor * expected_s)
+
 
 class Run:
     """One request, its folders and its process."""
@@ -168,7 +172,7 @@ class Run:
     def _overdue(self, limits: Limits) -> str | None:
         self.progress()
         expected_s = self.engine.expected_s(self.case)
-        allowed_s = max(limits.least_s, limits.factor * expected_s)
+        allowed_s = limits.allowed_s(expected_s)
         silent_s = max(limits.silent_s, limits.silent_share * expected_s)
         if self._process.wall_s > allowed_s:
             return f"ran past its time limit of {allowed_s:.3g} s"
