@@ -14,6 +14,7 @@ from .attempt import Attempt
 from .dataset import Dataset, DatasetError
 from .dataset_faults import SCHEMA_VERSION, bar_speed_m_s
 from .engine import OUTPUT, Engine, EngineFailure
+from .machine import machine_facts
 from .process import Ending, LineCounter, Process
 from .run_folder import RunRequest, prepare, run_name
 
@@ -211,6 +212,7 @@ class Run:
             "particles": len(packing.particles),
             "frames": schedule.frames,
             "samples": schedule.samples,
+            "machine": machine_facts(),
             "limitations": self.engine.limitations(case),
             "gates": [],
             "run_key": self.key,

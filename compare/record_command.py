@@ -16,12 +16,13 @@ from crossdem import ExitCode, __version__
 from crossdem.adapters.case import Case, CaseError
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.gates import REFERENCE
+from crossdem.adapters.machine import machine_facts
 from crossdem.adapters.packing import Packing
 from crossdem.adapters.solver import SolverError, find_solver
 from crossdem.adapters.workspace import Workspace
 
 from .ensemble import RUN, Ensemble
-from .fingerprint import content_sha256, machine_facts
+from .fingerprint import content_sha256
 from .record import libraries
 from .recorded import CONTENT, DATE, RECORDS, SCHEMA_VERSION, Record
 from .recorded_tables import FIELD_DIGITS
@@ -175,7 +176,7 @@ def _manifest(case: Case, ensemble: Ensemble, plan: Plan, command: str) -> dict:
         "crossdem": __version__,
         "solver_sha256": hashlib.sha256(find_solver().read_bytes()).hexdigest(),
         "engines": {engine: _engine(ensemble, engine) for engine in ensemble.engines},
-        "machine": machine_facts(),  # of the machine that wrote this; runs carry none
+        "machine": machine_facts(),  # that wrote this; each run names its own
         "rounding": f"fields.csv.gz to 1e-{FIELD_DIGITS} m; every other number reads back the same",
         "libraries": libraries(),
     }

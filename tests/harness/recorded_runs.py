@@ -5,9 +5,10 @@ import hashlib
 import pandas as pd
 from synthetic import case, dataset
 
+from crossdem.adapters.machine import machine_facts
 from crossdem.adapters.packing import COLUMNS
 from crossdem.compare.ensemble import Ensemble
-from crossdem.compare.fingerprint import content_sha256, machine_facts
+from crossdem.compare.fingerprint import content_sha256
 from crossdem.compare.recorded import CONTENT, DATE, Record
 
 

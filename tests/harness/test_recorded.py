@@ -18,7 +18,7 @@ from crossdem.adapters.workspace import WorkspaceError
 from crossdem.compare.fingerprint import content_sha256
 from crossdem.compare.record_command import plans_of
 from crossdem.compare.recorded import Record, RecordError, find_record
-from crossdem.compare.reproduced import difference, strangeness
+from crossdem.compare.reproduced import difference, same_program, strangeness
 
 FILES = (
     *("SHA256SUMS", "case.json", "endpoints.csv", "fields.csv.gz", "manifest.json"),
@@ -214,6 +214,21 @@ def test_an_engine_of_another_version_may_differ_as_its_twins_do_and_no_more(wri
     assert difference(made, run, again) is None
     again.resistance[forces] *= 5
     assert "mean_resistance_N" in difference(made, run, again)
+
+
+def test_the_machine_that_counts_is_that_of_the_run(written):
+    made, _ = written
+    run = "liggghts", 2, 1
+    [again] = [
+        one
+        for one in recorded_datasets(case(), engines=("liggghts",))
+        if (one.engine, one.seed, one.twin) == run
+    ]
+    assert same_program(made, run, again)
+    elsewhere = made.ensemble.manifests[run] | {"machine": {"machine": "another"}}
+    manifests = made.ensemble.manifests | {run: elsewhere}
+    on_cluster = replace(made, ensemble=replace(made.ensemble, manifests=manifests))
+    assert not same_program(on_cluster, run, again)
 
 
 def test_one_recorded_twin_alone_tells_nothing_of_scatter():

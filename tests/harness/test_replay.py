@@ -34,8 +34,9 @@ def replay(records, out, *options):
 
 def test_recorded_engines_are_compared_where_there_is_none(records, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert replay(records, tmp_path / "out", "--engines", "none") != ExitCode.BAD_INPUT
+    ended = replay(records, tmp_path / "out", "--engines", "none")
     report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert ended == report["verdict"]["exit_code"]
     assert {run["engine"] for run in report["runs"]} == {"native", "liggghts"}
     assert report["checks"] and not (tmp_path / "out" / "runs").exists()
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
@@ -70,7 +71,9 @@ def test_a_case_of_other_runs_is_refused(records, tmp_path, capsys):
 
 def test_another_margin_needs_no_other_record(records, tmp_path):
     changed = ("--set", "title=Mine", "--engines", "none")
-    assert replay(records, tmp_path / "out", *changed) != ExitCode.BAD_INPUT
+    ended = replay(records, tmp_path / "out", *changed)
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert (ended, report["case"]["title"]) == (report["verdict"]["exit_code"], "Mine")
 
 
 def test_runs_made_here_start_from_the_recorded_packings(recorded, tmp_path):

@@ -15,6 +15,7 @@ from few_particles import Disc, few_particles
 from small_case import small_case
 
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.machine import machine_facts
 from crossdem.adapters.one_run import Limits
 from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run import RunRequest, run_all
@@ -41,6 +42,7 @@ def test_a_whole_run_becomes_a_dataset_with_inputs_log_and_readme(fake, case, pa
     assert run.manifest["engine_version"] == "LIGGGHTS-PUBLIC 3.8.0-fake"
     assert str(tmp_path) not in (result.dataset_folder / "manifest.json").read_text()
     assert run.manifest["command"][0] == "stdbuf"
+    assert run.manifest["machine"] == machine_facts()
 
 
 @pytest.mark.parametrize(
