@@ -86,8 +86,9 @@ def compare_runs(
     """Compare the `datasets` of one `case`, and with them the `recorded` runs of it; `failures` says for each
     (engine, seed) without a dataset why.
 
-    The datasets are read one by one, and only twin 0 of each packing stays in memory. Failures that are `unsupported` make their engine not comparable; it has not failed. `horizon`
-    holds the comparison particle by particle: an engine that differs there differs, whatever the statistics say.
+    The datasets are read one by one, and only twin 0 of each packing stays in memory. Failures that are
+    `unsupported` make their engine not comparable; it has not failed. `horizon` holds the comparison particle by
+    particle: an engine that differs there differs, whatever the statistics say.
 
     Raises ComparisonError when the runs are not of this case, a run is there twice, or a check makes no sense.
     """
