@@ -23,4 +23,5 @@ class ExitCode(IntEnum):
     ENGINE_FAILED = 3  # or is missing
     INCONCLUSIVE = 4
     BUG = 70  # EX_SOFTWARE of sysexits.h
+    SYSTEM = 74  # EX_IOERR: the system refused a file or a process
     INTERRUPTED = 130  # 128 + SIGINT, as shells have it

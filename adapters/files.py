@@ -2,17 +2,21 @@
 
 import os
 from pathlib import Path
+from secrets import token_hex
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Replace `path` by `content`, whole or not at all, also when two write it at once. Raises OSError, leaving nothing."""
-    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    """Replace `path` by `content`, whole or not at all, also when two write it at once, on two machines.
+
+    Raises OSError. Whatever breaks it off, nothing else is left.
+    """
+    partial = path.with_name(f".{path.name}.{token_hex(8)}.partial")
     try:
         with open(partial, "wb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
         os.rename(partial, path)
-    except OSError:
+    except BaseException:
         partial.unlink(missing_ok=True)
         raise

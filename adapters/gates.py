@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Mapping
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from .dataset_faults import lost_particles
 
 REST = "rest_kinetic_energy_J"
 CONTACTS = "contacts_share"
+CONTACTS_AT_REST = "contacts_at_rest"  # in the manifest of a run that is compared
 REFERENCE = "native"  # the engine whose rested bed the others' are compared with
 
 
@@ -20,7 +23,10 @@ def contacts_at_rest(dataset: Dataset) -> int:
     return int(dataset.resistance["contacts"].iloc[0])
 
 
-def with_gates(dataset: Dataset, native_contacts: int | None) -> Dataset:
+Run = TypeVar("Run", bound=Hashable)
+
+
+def with_gates(dataset: Dataset, native_contacts: int | None = None) -> Dataset:
     """The same run with its gates in the manifest.
 
     `native_contacts` are those of the native run on the same packing at the end of its rest. Without one (None)
@@ -32,16 +38,29 @@ def with_gates(dataset: Dataset, native_contacts: int | None) -> Dataset:
     if dataset.case["time"]["rest_s"] > 0:
         gates.append(_rest(float(at_rest["kinetic_energy_J"]), limits["rest_kinetic_energy_J"]))
     if native_contacts is not None:
-        gates.append(_contacts(dataset, native_contacts))
+        gates.append(_contacts(contacts_at_rest(dataset), native_contacts, limits[CONTACTS]))
     gates.append(_no_particle_lost(dataset))
     return replace(dataset, manifest=dataset.manifest | {"gates": gates})
 
 
-def with_contacts_gate(dataset: Dataset, native_contacts: int) -> Dataset:
-    """The same run with its gate on contacts set anew and all others as they are."""
-    others = [gate for gate in dataset.manifest["gates"] if gate["name"] != CONTACTS]
-    gates = [*others, _contacts(dataset, native_contacts)]
-    return replace(dataset, manifest=dataset.manifest | {"gates": gates})
+def with_contacts_gates(manifests: Mapping[Run, dict], limit: float) -> dict[Run, dict]:
+    """Manifests of runs of one case, which hold CONTACTS_AT_REST, with their gates on contacts set by the native run
+    among them on the same packing. Without one, a run keeps the gate that it has.
+    """
+    native = {
+        about["packing_hash"]: about[CONTACTS_AT_REST]
+        for about in manifests.values()
+        if about["engine"] == REFERENCE
+    }
+
+    def gated(about: dict) -> dict:
+        if about["packing_hash"] not in native:
+            return about
+        own = [gate for gate in about["gates"] if gate["name"] != CONTACTS]
+        anew = _contacts(about[CONTACTS_AT_REST], native[about["packing_hash"]], limit)
+        return about | {"gates": [*own, anew]}
+
+    return {run: gated(about) for run, about in manifests.items()}
 
 
 def _rest(energy_J: float, limit_J: float) -> dict:
@@ -51,8 +70,7 @@ def _rest(energy_J: float, limit_J: float) -> dict:
     return _gate(REST, energy_J, limit_J, passed, f"{said} ({numbers})")
 
 
-def _contacts(dataset: Dataset, native_contacts: int) -> dict:
-    contacts, limit = contacts_at_rest(dataset), dataset.case["gates"]["contacts_share"]
+def _contacts(contacts: int, native_contacts: int, limit: float) -> dict:
     difference = abs(contacts - native_contacts) / max(1, native_contacts)
     passed = difference <= limit
     said = "the bed is the same" if passed else "not comparable: the rested bed is another one"

@@ -1,7 +1,9 @@
 """Several MPI processes for one run: what is put before the engine's command, and Open MPI's settings.
 
 mpirun listens on every network interface, whatever it is told. So it gets a network of its own, in which there is no
-interface but loopback: the kernel's namespaces need no rights for that, where they are not forbidden.
+interface but loopback. What it leaves in shared memory and in its folder of sockets when it is killed, nobody would remove:
+both lie in a file system of its own, which goes with its last process. The kernel's namespaces need no rights for either,
+where they are not forbidden.
 """
 
 from __future__ import annotations
@@ -13,9 +15,15 @@ from functools import lru_cache
 from .engine import EngineNotFound
 
 ENGINES = ("liggghts", "liggghts-averaged")  # those that split a bed among ranks
-ALONE = [*("unshare", "--map-root-user", "--net"), *("sh", "-c", 'ip link set lo up && exec "$@"')]
+SHARED_MEMORY = "/dev/shm"  # a path short enough for sockets, too
+ALONE = [
+    *("unshare", "--map-root-user", "--net", "--mount", "sh", "-c"),
+    f'ip link set lo up && mount -t tmpfs tmpfs {SHARED_MEMORY} && exec "$@"',
+]
 SETTINGS = {
     "OMPI_MCA_btl": "self,vader",  # by shared memory
+    "OMPI_MCA_btl_vader_backing_directory": SHARED_MEMORY,
+    "OMPI_MCA_orte_tmpdir_base": SHARED_MEMORY,
     "OMPI_MCA_plm": "isolated",  # on this machine, also where Slurm or ssh would reach others
     "OMPI_MCA_ras": "^slurm",
     "OMPI_MCA_hwloc_base_binding_policy": "none",  # or two runs at a time share the first cores
@@ -54,6 +62,7 @@ def check(path: str | None) -> None:
     if tried.returncode:
         said = (tried.stderr.strip().splitlines() or ["no reason given"])[-1]
         raise EngineNotFound(
-            "mpirun would listen on every network interface, and this machine allows it no network of its own "
+            "mpirun would listen on every network interface and leave files in shared memory, and this machine allows it no "
+            "network and file system of its own "
             f"({said}): leave out --mpi-ranks"
         )

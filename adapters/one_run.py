@@ -14,6 +14,7 @@ from .attempt import Attempt
 from .dataset import Dataset, DatasetError
 from .dataset_faults import SCHEMA_VERSION, bar_speed_m_s
 from .engine import OUTPUT, Engine, EngineFailure
+from .machine import machine_facts
 from .process import Ending, LineCounter, Process
 from .run_folder import RunRequest, prepare, run_name
 
@@ -29,6 +30,10 @@ class Limits:
     factor: float = 20.0  # of the CPU time that a run is expected to take
     silent_s: float = 120.0  # without a new sample, at the least
     silent_share: float = 1.0  # of the expected CPU time without a new sample
+
+    def allowed_s(self, expected_s: float) -> float:
+        """Wall time of a run that is expected to take so much CPU time."""
+        return max(self.least_s, self.factor * expected_s)
 
 
 class Run:
@@ -168,7 +173,7 @@ class Run:
     def _overdue(self, limits: Limits) -> str | None:
         self.progress()
         expected_s = self.engine.expected_s(self.case)
-        allowed_s = max(limits.least_s, limits.factor * expected_s)
+        allowed_s = limits.allowed_s(expected_s)
         silent_s = max(limits.silent_s, limits.silent_share * expected_s)
         if self._process.wall_s > allowed_s:
             return f"ran past its time limit of {allowed_s:.3g} s"
@@ -207,6 +212,7 @@ class Run:
             "particles": len(packing.particles),
             "frames": schedule.frames,
             "samples": schedule.samples,
+            "machine": machine_facts(),
             "limitations": self.engine.limitations(case),
             "gates": [],
             "run_key": self.key,

@@ -37,7 +37,7 @@ class Process:
         self._started = time.monotonic()
         with open(log, "wb") as output:
             self._process = subprocess.Popen(
-                [*_bound_to_us(), *command],
+                [*bound_to_us(), *command],
                 cwd=folder,
                 env=os.environ | environment,
                 stdin=subprocess.DEVNULL,
@@ -82,7 +82,7 @@ class Process:
             pass
 
 
-def _bound_to_us() -> list[str]:
+def bound_to_us() -> list[str]:
     """What is put before a command that shall not outlive this process; nothing where the system lacks it."""
     found = shutil.which("setpriv")
     return [found, "--pdeathsig", "KILL"] if found else []

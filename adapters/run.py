@@ -13,7 +13,7 @@ from .attempt import clear_away
 from .dataset import Dataset
 from .engine import EngineFailure, EngineNotFound
 from .engines import get_engine
-from .gates import REFERENCE, contacts_at_rest, with_gates
+from .gates import REFERENCE, with_gates
 from .one_run import Limits, Run
 from .run_folder import RunRequest, run_key
 
@@ -96,8 +96,6 @@ class _Queue:
         self._limits = limits
         self._waiting: list[Run] = []
         self._running: list[Run] = []
-        self._ended: list[tuple[Run, Dataset]] = []  # until the contacts for their gates are known
-        self._native_contacts: dict[tuple[str, str], int] = {}  # at the end of the rest, by bed
         self.results: dict[int, RunResult] = {}
 
     def admit(self, request: RunRequest) -> None:
@@ -105,13 +103,13 @@ class _Queue:
         run, answer = look_up(request, self._out_dir, self._journal)
         if answer:
             self.results[id(request)] = answer
-        elif dataset := run.finished():
-            self._end(run, dataset)
+        elif run.finished():
+            self._finish(run, "reused")
         else:
             self._waiting.append(run)
 
     def work(self) -> None:
-        # The native runs first, as the gates of the others wait for them and they are short; then the longest.
+        # The native runs first, as they are short and the others are compared with them; then the longest.
         self._waiting.sort(
             key=lambda run: (run.engine.name != REFERENCE, -run.engine.expected_s(run.case))
         )
@@ -119,16 +117,14 @@ class _Queue:
         while self._waiting or self._running:
             self._start()
             self._poll()
-            self._keep_ended()
             if time.monotonic() - told >= PROGRESS_S:
                 told = time.monotonic()
                 for run in self._running:
                     self._on_progress(run.request, *run.progress())
             time.sleep(POLL_S)
-        self._keep_ended()
 
     def stop(self) -> None:
-        for run in [*self._running, *(run for run, _ in self._ended)]:
+        for run in self._running:
             run.stop()
 
     def _start(self) -> None:
@@ -152,37 +148,19 @@ class _Queue:
                 self._fail(run, str(failure))
             else:
                 self._running.remove(run)
-                self._end(run, dataset)
-
-    def _end(self, run: Run, dataset: Dataset) -> None:
-        self._ended.append((run, dataset))
-        if run.engine.name == REFERENCE:
-            self._native_contacts[bed(run)] = contacts_at_rest(dataset)
-
-    def _keep_ended(self) -> None:
-        """Finish the runs whose gates need not wait for a native run."""
-        unfinished = [*self._waiting, *self._running]
-        awaited = {bed(run) for run in unfinished if run.engine.name == REFERENCE}
-        ready = [entry for entry in self._ended if bed(entry[0]) not in awaited]
-        for entry in ready:
-            self._ended.remove(entry)
-            self._keep(*entry)
+                self._keep(run, dataset)
 
     def _keep(self, run: Run, dataset: Dataset) -> None:
-        native_contacts = self._native_contacts.get(bed(run))
-        gated = dataset  # a run that is there keeps the gates it has, where there is nothing to set them by anew
-        if run.started or native_contacts is not None:
-            gated = with_gates(dataset, native_contacts)
         try:
-            if run.started:
-                run.keep(gated)
-            elif gated.manifest != dataset.manifest:
-                gated.write_manifest(run.folder)
+            run.keep(with_gates(dataset))
         except OSError as error:
             self._fail(run, f"ended well, but its dataset cannot be written: {error}")
         else:
-            self._on_progress(run.request, 1.0, 0.0)
-            self._answer(run.request, "done" if run.started else "reused", folder=run.folder)
+            self._finish(run, "done")
+
+    def _finish(self, run: Run, status: str) -> None:
+        self._on_progress(run.request, 1.0, 0.0)
+        self._answer(run.request, status, folder=run.folder)
 
     def _fail(self, run: Run, reason: str) -> None:
         exit_status = run.ending.status if run.ending else None
@@ -197,8 +175,3 @@ class _Queue:
         exit_status: int | None = None,
     ) -> None:
         self.results[id(request)] = RunResult(request, folder, failure, status, exit_status)
-
-
-def bed(run: Run) -> tuple[str, str]:
-    """What names the bed that a run loads: variants of a case share their packings, and rest differently."""
-    return run.case.run_hash, run.request.packing.hash

@@ -5,6 +5,8 @@ import shutil
 import subprocess
 from pathlib import Path
 
+from .process import bound_to_us
+
 # The solver's exit status where a motion is not finite, leaves the box, explodes or does not settle.
 BEYOND_REASON = 3
 _IN_CHECKOUT = Path(__file__).resolve().parent.parent / "build/release/solver/crossdem-solver"
@@ -26,9 +28,10 @@ def find_solver() -> Path:
 
 
 def call_solver(arguments: list[str], stdin: bytes = b"") -> subprocess.CompletedProcess:
-    """Runs the solver to its end. Status 2 (bad input) is for the caller; any other but 0 is a SolverError."""
+    """Runs the solver to its end, or to ours. Status 2 (bad input) is for the caller; any other but 0 is a SolverError."""
     try:
-        done = subprocess.run([find_solver(), *arguments], input=stdin, capture_output=True)
+        command = [*bound_to_us(), find_solver(), *arguments]
+        done = subprocess.run(command, input=stdin, capture_output=True)
     except OSError as error:
         raise SolverError(f"crossdem-solver cannot be started: {error.strerror}") from error
     if done.returncode in (0, 2):

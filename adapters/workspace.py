@@ -30,6 +30,7 @@ class Workspace:
             self._is_new = not (self.root / _MARKER).exists()
             self._create_folders()
             self._lock = self._mark()
+            self._sweep()
         except (OSError, ValueError) as error:
             self._remove_created()
             reason = getattr(error, "strerror", None) or error
@@ -66,6 +67,11 @@ class Workspace:
             marker.write(json.dumps(_MARK) + "\n")
             marker.flush()
         return marker
+
+    def _sweep(self) -> None:
+        """Remove packings that a crossdem that was killed had begun: nobody else makes any here."""
+        for unfinished in (self.root / "packings").glob(".seed*"):
+            shutil.rmtree(unfinished, ignore_errors=True)
 
     def _remove_created(self) -> None:
         for folder in reversed(self._created):

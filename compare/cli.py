@@ -223,6 +223,9 @@ def main(arguments: list[str] | None = None) -> int:
     except (SolverError, WorkflowError) as error:
         click.echo(error, err=True)
         return ExitCode.ENGINE_FAILED
+    except OSError as error:
+        click.echo(f"crossdem: {error}: correct that, and repeat the command to go on", err=True)
+        return ExitCode.SYSTEM
     except Exception:
         traceback.print_exc()
         click.echo(

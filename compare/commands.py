@@ -18,11 +18,10 @@ from .ensemble import Ensemble
 from .explain import explain_case
 from .horizon import Horizon
 from .horizon_runs import find_horizon, horizon_of_runs
-from .intake import native_first
 from .record_command import plans_of, record_case
-from .recorded import find_record
-from .replay import gated, replayed, restore_packings
-from .runs import Runs, cores, run_engines, write_inputs
+from .recorded import check_writable, find_record
+from .replay import replayed, restore_packings
+from .runs import Runs, here, run_engines, write_inputs
 from .stability import FAILED
 from .stability_runs import map_stability
 from .summary import print_summary
@@ -31,11 +30,10 @@ from .summary import print_summary
 def check(
     case_file, engines, seeds, twins, out, overrides, jobs, profile, ranks, replay, record
 ) -> ExitCode:
-    if case_file.is_dir():
-        return _check_ladder(case_file, engines, out, overrides, jobs or cores())
-    case = _load(case_file, overrides)
-    if case.resolved["particle"]:  # no bed, of which there could be seeds
-        return _check_ladder(case_file, engines, out, overrides, jobs or cores())
+    case = None if case_file.is_dir() else _load(case_file, overrides)
+    if not case or case.resolved["particle"]:  # no bed, of which there could be seeds
+        _refuse_on_ladder({"--replay": replay, "--profile": profile, "--mpi-ranks": ranks > 1})
+        return _check_ladder(case_file, engines, out, overrides, jobs)
     _needs_bar(case)
     if replay:
         return _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, record)
@@ -52,15 +50,25 @@ def _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, f
         if engines:
             restore_packings(case, record, seeds, workspace)
             runs, found = _run(case, engines, seeds, workspace, jobs, twins, profile, ranks)
-    datasets = gated(map(Dataset.read, runs.folders), others)
-    return _report(case, datasets, runs, workspace, found, others)
+    return _report(case, map(Dataset.read, runs.folders), runs, workspace, found, others)
 
 
-def _run(case, engines, seeds, workspace, jobs, *ensemble) -> tuple[Runs, Horizon | None]:
-    runs = run_engines(case, engines, seeds, workspace, jobs, Console(), *ensemble)
+def _run(
+    case, engines, seeds, workspace, jobs, twins, profile, ranks
+) -> tuple[Runs, Horizon | None]:
+    runs = run_engines(case, engines, seeds, workspace, jobs, Console(), twins, profile, ranks)
     return runs, horizon_of_runs(
-        case, engines, runs.failures, workspace, jobs or cores(), Console()
+        case, engines, runs.failures, workspace, here(jobs, profile), Console()
     )
+
+
+def _refuse_on_ladder(given: dict[str, object]) -> None:
+    """Raises UsageError for options that are for beds."""
+    if names := [name for name, value in given.items() if value]:
+        raise click.UsageError(
+            f"{', '.join(names)}: not for cases of particles placed by hand: each of their runs takes a second here, on one "
+            "core. Leave it out"
+        )
 
 
 def _check_ladder(*arguments) -> ExitCode:
@@ -94,7 +102,7 @@ def compare(folders, out) -> ExitCode:
     _needs_bar(case)
     workspace = Workspace(out or Path("results") / f"{case.name}-compare")
     try:
-        return _report(case, map(Dataset.read, native_first(folders)), Runs((), {}), workspace)
+        return _report(case, map(Dataset.read, folders), Runs((), {}), workspace)
     except DatasetError:
         workspace.discard_if_new()
         raise
@@ -147,6 +155,8 @@ def record(case_file, variants, record, out, jobs, profile, **ensemble) -> ExitC
     plans = [(plan, _load(case_file, plan.overrides)) for plan in plans_of(variants, **ensemble)]
     for _, case in plans:
         _needs_bar(case)
+    for plan, case in plans:
+        check_writable(record / case.name / plan.name)
     with _workspace(plans[0][1], [], out) as workspace:
         record_case(case_file, plans, record, workspace, jobs, profile, Console())
     return ExitCode.AGREES

@@ -5,13 +5,14 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pandas as pd
 
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.engines import ENGINES
+from crossdem.adapters.gates import with_contacts_gates
 
 from .answers import answer_faults
 from .checks import Check, CheckResult, check_faults, evaluate
@@ -84,9 +85,9 @@ def compare_runs(
     """Compare the `datasets` of one `case`, and with them the `recorded` runs of it; `failures` says for each
     (engine, seed) without a dataset why.
 
-    The datasets are read one by one, and only twin 0 of each packing stays in memory. Native ones come first: they set
-    the gate on contacts. Failures that are `unsupported` make their engine not comparable; it has not failed. `horizon`
-    holds the comparison particle by particle: an engine that differs there differs, whatever the statistics say.
+    The datasets are read one by one, and only twin 0 of each packing stays in memory. Failures that are
+    `unsupported` make their engine not comparable; it has not failed. `horizon` holds the comparison particle by
+    particle: an engine that differs there differs, whatever the statistics say.
 
     Raises ComparisonError when the runs are not of this case, a run is there twice, or a check makes no sense.
     """
@@ -97,6 +98,9 @@ def compare_runs(
     if faults := case_faults(case.resolved) + intake.faults:
         raise ComparisonError(faults)
     ensemble = ensemble.joined(recorded) if recorded else ensemble
+    # Anew for all: a recorded run meets another native run here than where it was recorded.
+    share = case.resolved["gates"]["contacts_share"]
+    ensemble = replace(ensemble, manifests=with_contacts_gates(ensemble.manifests, share))
     engines = in_order({*ensemble.engines, *(engine for engine, _ in failures)})
     order = {engine: number for number, engine in enumerate(engines)}
     ensemble = ensemble.selected(

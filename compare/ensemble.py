@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.gates import CONTACTS_AT_REST, contacts_at_rest
 
 from .motion import displacement_field
 from .quantities import QUANTITIES
@@ -28,7 +29,7 @@ class Ensemble:
     endpoints: pd.DataFrame  # a column per quantity
     profiles: pd.DataFrame  # mean resistance [N] per cm; columns: depth_m, the middles of the bins
     fields: pd.DataFrame  # displacement [m] at the end; columns: (component, x_m, y_m) of the cells; NaN: empty cell
-    manifests: dict[tuple[str, int, int], dict]  # by RUN
+    manifests: dict[tuple[str, int, int], dict]  # by RUN; with CONTACTS_AT_REST
 
     @classmethod
     def of(cls, datasets: Iterable[Dataset]) -> "Ensemble":
@@ -39,7 +40,7 @@ class Ensemble:
             endpoints[run] = pd.Series({name: one.of(dataset) for name, one in QUANTITIES.items()})
             profiles[run] = resistance_profile(dataset.resistance)["mean_N"]
             fields[run] = _field(dataset)
-            manifests[run] = dataset.manifest
+            manifests[run] = dataset.manifest | {CONTACTS_AT_REST: contacts_at_rest(dataset)}
         return cls(_table(endpoints), _table(profiles), _table(fields), manifests)
 
     @property

@@ -12,7 +12,7 @@ from .attribution import Attribution, Station, attribute
 from .checks import Check
 from .ingredients import Ingredient, engine_itself, walk
 from .progress import ProgressDisplay
-from .runs import where
+from .runs import here, where
 from .variants import Variant, VariantRun, run_many_variants, settled
 
 
@@ -35,7 +35,7 @@ def explain_case(
     checks = Check.of_case(case.resolved)
     steps = route(case, target)
     with ProgressDisplay(console) as display:
-        packings = settled(case, seeds, workspace, jobs, display)
+        packings = settled(case, seeds, workspace, here(jobs, profile), display)
         pairs = [
             (variant, packing)
             for _, variant in steps

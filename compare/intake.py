@@ -1,16 +1,13 @@
-"""Runs on their way into a comparison: which may enter, with which gates, and what forbids to compare two engines."""
+"""Runs on their way into a comparison: which may enter, and what forbids to compare two engines."""
 
 from __future__ import annotations
 
 import itertools
-import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
-from crossdem.adapters.gates import REFERENCE, contacts_at_rest, with_contacts_gate
 
 Manifests = dict[tuple[str, int, int], dict]  # by engine, seed and twin
 
@@ -23,14 +20,9 @@ class Intake:
     seen: frozenset[tuple[str, int, int]]  # runs that are there already
     faults: list[str] = field(default_factory=list)  # of the runs that may not pass
     _kept: list[Dataset] = field(default_factory=list)
-    _contacts: dict[str, int] = field(default_factory=dict)  # of the native run, by packing_hash
 
     def sound(self, datasets: Iterable[Dataset]) -> Iterator[Dataset]:
-        """Those of them that belong here, each once and with its gate on contacts where the native run of its packing
-        has come before.
-
-        A run made before, or without, its native counterpart lacks that gate.
-        """
+        """Those of them that belong here, each once."""
         wanted = self.case.run_hash
         for dataset in datasets:
             run = (dataset.engine, dataset.seed, dataset.twin)
@@ -43,34 +35,13 @@ class Intake:
                 self.faults.append(f"{run_name(run)}: given more than once")
             else:
                 self.seen |= {run}
-                yield self._entered(dataset)
+                if dataset.twin == 0:
+                    self._kept.append(dataset)
+                yield dataset
 
     def pictured(self, order: dict[str, int]) -> tuple[Dataset, ...]:
         """Twin 0 of each packing, engines in this order."""
         return tuple(sorted(self._kept, key=lambda run: (order[run.engine], run.seed)))
-
-    def _entered(self, dataset: Dataset) -> Dataset:
-        packing = dataset.manifest["packing_hash"]
-        if dataset.engine == REFERENCE:
-            self._contacts[packing] = contacts_at_rest(dataset)
-        if packing in self._contacts:
-            dataset = with_contacts_gate(dataset, self._contacts[packing])
-        if dataset.twin == 0:
-            self._kept.append(dataset)
-        return dataset
-
-
-def native_first(folders: Iterable[Path]) -> list[Path]:
-    """Run folders in an order in which they can be taken in."""
-    return sorted(folders, key=lambda folder: _engine(folder) != REFERENCE)
-
-
-def _engine(folder: Path) -> str | None:
-    """None for a folder that is no run: reading it will say so."""
-    try:
-        return json.loads((folder / "manifest.json").read_text(encoding="utf-8"))["engine"]
-    except (OSError, ValueError, LookupError, TypeError):
-        return None
 
 
 def run_name(run: tuple[str, int, int]) -> str:

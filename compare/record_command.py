@@ -13,17 +13,18 @@ from pathlib import Path
 from rich.console import Console
 
 from crossdem import ExitCode, __version__
-from crossdem.adapters.case import Case
+from crossdem.adapters.case import Case, CaseError
 from crossdem.adapters.dataset import Dataset
-from crossdem.adapters.gates import REFERENCE, contacts_at_rest
+from crossdem.adapters.gates import REFERENCE
+from crossdem.adapters.machine import machine_facts
 from crossdem.adapters.packing import Packing
 from crossdem.adapters.solver import SolverError, find_solver
 from crossdem.adapters.workspace import Workspace
 
 from .ensemble import RUN, Ensemble
-from .fingerprint import content_sha256, machine_facts
+from .fingerprint import content_sha256
 from .record import libraries
-from .recorded import CONTACTS, CONTENT, DATE, RECORDS, Record
+from .recorded import CONTENT, DATE, RECORDS, SCHEMA_VERSION, Record
 from .recorded_tables import FIELD_DIGITS
 from .runs import Runs, run_engines
 
@@ -57,7 +58,13 @@ def plans_of(
     variant_engines: Sequence[str],
     variant_seeds: int | None,
 ) -> list[Plan]:
-    """Of the case as it stands, then of each of its `variants`, on packings without twins."""
+    """Of the case as it stands, then of each of its `variants`, on packings without twins. Raises CaseError."""
+    if faults := [
+        f"--variant {name}: it becomes the name of a folder; leave out the /"
+        for name in variants
+        if "/" in name
+    ]:
+        raise CaseError(faults)
     more = native_twins if native_twins is not None else twins
     twin_seeds = min(twin_seeds or seeds, seeds)
     plans = [Plan((), tuple(engines), seeds, twins, twin_seeds, max(more, twins))]
@@ -101,10 +108,7 @@ def record_of(case: Case, folders: Sequence[Path], plan: Plan, command: str) -> 
     def read() -> Iterator[Dataset]:
         for folder in folders:
             dataset = Dataset.read(folder)
-            facts[dataset.engine, dataset.seed, dataset.twin] = {
-                CONTENT: content_sha256(dataset),
-                CONTACTS: contacts_at_rest(dataset),
-            }
+            facts[dataset.engine, dataset.seed, dataset.twin] = {CONTENT: content_sha256(dataset)}
             if dataset.twin == 0:
                 packings[dataset.seed] = Packing.read(folder / "inputs")
             yield dataset
@@ -160,7 +164,7 @@ def _refuse_failures(runs: Runs) -> None:
 
 def _manifest(case: Case, ensemble: Ensemble, plan: Plan, command: str) -> dict:
     return {
-        "schema_version": 1,
+        "schema_version": SCHEMA_VERSION,
         "case": {
             "name": case.name,
             "title": case.resolved["title"],
@@ -172,7 +176,7 @@ def _manifest(case: Case, ensemble: Ensemble, plan: Plan, command: str) -> dict:
         "crossdem": __version__,
         "solver_sha256": hashlib.sha256(find_solver().read_bytes()).hexdigest(),
         "engines": {engine: _engine(ensemble, engine) for engine in ensemble.engines},
-        "machine": machine_facts(),  # of the machine that wrote this; runs carry none
+        "machine": machine_facts(),  # that wrote this; each run names its own
         "rounding": f"fields.csv.gz to 1e-{FIELD_DIGITS} m; every other number reads back the same",
         "libraries": libraries(),
     }

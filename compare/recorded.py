@@ -10,6 +10,7 @@ import hashlib
 import json
 import shutil
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,9 +25,26 @@ from .ensemble import Ensemble
 
 RECORDS = Path(__file__).resolve().parent.parent / "reference_cases" / "expected"
 SUMS = "SHA256SUMS"
+SCHEMA_VERSION = 1  # of manifest.json and all beside it
 CONTENT = "content_sha256"  # of a run's manifest as recorded: fingerprint.content_sha256
-CONTACTS = "contacts_at_rest"  # of a run's manifest as recorded: pairs of particles
 DATE = "recorded_utc"  # of a run's manifest as read, from the record's own
+
+
+def check_writable(folder: Path) -> None:
+    """Raises WorkspaceError where no record can be written into `folder`, before there are runs; leaves nothing."""
+    made = []
+    try:
+        partial = _partial(folder).absolute()
+        made = [place for place in (partial, *partial.parents) if not place.exists()]
+        partial.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise WorkspaceError(
+            f"{folder}: cannot be written: {error.strerror}; choose another folder with --record"
+        ) from error
+    finally:
+        for place in made:
+            with suppress(OSError):
+                place.rmdir()
 
 
 class RecordError(CaseError):
@@ -35,7 +53,7 @@ class RecordError(CaseError):
 
 @dataclass(frozen=True)
 class Record:
-    """Runs of one case. The ensemble's manifests hold CONTENT and CONTACTS beside what a run's manifest holds."""
+    """Runs of one case. The ensemble's manifests hold CONTENT beside what those of an ensemble hold."""
 
     case: Case
     ensemble: Ensemble
@@ -49,7 +67,7 @@ class Record:
 
     def write(self, folder: Path) -> None:
         """Into `folder`, in place of what was there: whole or not at all."""
-        partial = folder.with_name(f".{folder.name}.partial")
+        partial = _partial(folder)
         shutil.rmtree(partial, ignore_errors=True)
         partial.mkdir(parents=True)
         contents = self._contents()
@@ -57,20 +75,34 @@ class Record:
             write_whole(partial / name, content)
         sums = (f"{_sha256(content)}  {name}\n" for name, content in sorted(contents.items()))
         write_whole(partial / SUMS, "".join(sums).encode())
-        shutil.rmtree(folder, ignore_errors=True)
+        old = folder.with_name(f".{folder.name}.old")  # until the new one is there
+        shutil.rmtree(old, ignore_errors=True)
+        if folder.exists():
+            folder.rename(old)
         partial.rename(folder)
+        shutil.rmtree(old, ignore_errors=True)
 
     @classmethod
     def read(cls, folder: Path) -> Record:
         """Raises RecordError when a file was changed, is missing, or was added."""
         contents = _verified(Path(folder))
         try:
+            layout = json.loads(contents["manifest.json"])["schema_version"]
+            if layout != SCHEMA_VERSION:
+                raise ValueError(
+                    f"its layout is {layout}, and this crossdem reads {SCHEMA_VERSION}"
+                )
             values = {name: _READERS[name](contents[name]) for name in _READERS}
-        except (KeyError, ValueError, OSError) as error:
-            raise RecordError([f"{folder}: holds no recorded ensemble: {error}"]) from error
-        about, manifests = values["manifest.json"], values["runs.json"]
-        manifests = {run: facts | {DATE: about[DATE]} for run, facts in manifests.items()}
-        about_packings = {int(seed): entry for seed, entry in values["packings.json"].items()}
+            about, manifests = values["manifest.json"], values["runs.json"]
+            manifests = {run: facts | {DATE: about[DATE]} for run, facts in manifests.items()}
+            about_packings = {int(seed): entry for seed, entry in values["packings.json"].items()}
+        except (LookupError, ValueError, TypeError, AttributeError, OSError) as error:
+            said = f"lacks {error}" if isinstance(error, KeyError) else str(error)
+            raise RecordError(
+                [
+                    f"{folder}: holds no recorded ensemble that can be read: {said}. `crossdem record` makes it anew"
+                ]
+            ) from error
         ensemble = Ensemble(
             values["endpoints.csv"], values["profiles.csv.gz"], values["fields.csv.gz"], manifests
         )
@@ -131,10 +163,12 @@ _READERS: dict[str, Callable[[bytes], Any]] = {
 
 def find_record(case: Case, folder: Path) -> Record:
     """The record of `case` among those that `folder` holds by case and variant. Raises RecordError."""
-    variants = sorted(path.parent for path in (folder / case.name).glob(f"*/{SUMS}"))
+    variants = sorted(path.parent for path in (folder / case.name).glob(f"[!.]*/{SUMS}"))
     for variant in variants:
-        if _READERS["case.json"](_verified(variant)["case.json"]).run_hash == case.run_hash:
+        if _run_hash(variant) == case.run_hash:
             return Record.read(variant)
+    for variant in variants:
+        _verified(variant)  # that of this case may be one whose case.json was changed
     there = ", ".join(variant.name for variant in variants)
     say = f"there are records of {there}" if there else f"there is no record of {case.name}"
     raise RecordError(
@@ -143,6 +177,19 @@ def find_record(case: Case, folder: Path) -> Record:
             "checks. Use a recorded case or variant (--set), or record this one with `crossdem record`"
         ]
     )
+
+
+def _partial(folder: Path) -> Path:
+    """Of a record on its way to `folder`."""
+    return folder.with_name(f".{folder.name}.partial")
+
+
+def _run_hash(variant: Path) -> str | None:
+    """Of the case in a record's folder; None where there is none."""
+    try:
+        return _READERS["case.json"]((variant / "case.json").read_bytes()).run_hash
+    except (OSError, ValueError, AttributeError):
+        return None
 
 
 def _verified(folder: Path) -> dict[str, bytes]:

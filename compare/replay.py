@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 
 from crossdem.adapters.case import Case
-from crossdem.adapters.dataset import Dataset
-from crossdem.adapters.gates import REFERENCE, with_contacts_gate
 from crossdem.adapters.workspace import Workspace
 
 from .ensemble import Ensemble
-from .recorded import CONTACTS, Record, RecordError
+from .recorded import Record, RecordError
 
 
 def replayed(record: Record, engines: Sequence[str], seeds: int, twins: int) -> Ensemble:
@@ -36,15 +34,3 @@ def restore_packings(case: Case, record: Record, seeds: int, workspace: Workspac
     """So that runs start from the recorded packings to the last bit, whatever the solver here would have settled."""
     for seed in range(1, seeds + 1):
         record.restore(seed, workspace.packing_folder(case, seed))
-
-
-def gated(datasets: Iterable[Dataset], others: Ensemble) -> Iterator[Dataset]:
-    """The same runs, with their gates on contacts set by the recorded native run of their packing, where there is one."""
-    contacts = {
-        facts["packing_hash"]: facts[CONTACTS]
-        for (engine, _, _), facts in others.manifests.items()
-        if engine == REFERENCE
-    }
-    for dataset in datasets:
-        known = contacts.get(dataset.manifest["packing_hash"])
-        yield dataset if known is None else with_contacts_gate(dataset, known)

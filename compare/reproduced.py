@@ -16,10 +16,11 @@ from statsmodels.stats.multitest import multipletests
 
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.gates import REFERENCE
+from crossdem.adapters.machine import machine_facts
 from crossdem.adapters.packing import Packing, make_twin
 
 from .ensemble import Ensemble
-from .fingerprint import content_sha256, machine_facts
+from .fingerprint import content_sha256
 from .recorded import CONTENT, Record
 
 Run = tuple[str, int, int]  # engine, seed, twin
@@ -43,7 +44,8 @@ def same_program(record: Record, run: Run, dataset: Dataset) -> bool:
         return True
     recorded = record.ensemble.manifests[run]
     version = recorded["engine_version"] == dataset.manifest["engine_version"]
-    return version and record.about["machine"] == machine_facts()
+    # A run that does not tell its machine was made on that which wrote the record, as far as anybody knows.
+    return version and recorded.get("machine", record.about["machine"]) == machine_facts()
 
 
 def difference(record: Record, run: Run, dataset: Dataset) -> str | None:

@@ -53,7 +53,7 @@ def run_engines(
     `jobs`, `profile`: as in run_ensemble. `ranks`: MPI processes per run, of the engines that can.
     """
     with ProgressDisplay(console) as display:
-        packings, unsettled = settle(case, seeds, workspace, jobs, display)
+        packings, unsettled = settle(case, seeds, workspace, here(jobs, profile), display)
         started_from = [
             make_twin(packing, number, workspace.twin_folder(packing, number))
             for packing in packings
@@ -84,7 +84,7 @@ def run_engines(
 
 
 def settle(
-    case: Case, seeds: int, workspace: Workspace, jobs: int | None, display: ProgressDisplay
+    case: Case, seeds: int, workspace: Workspace, jobs: int, display: ProgressDisplay
 ) -> tuple[list[Packing], dict[int, str]]:
     """The packings of seeds 1, 2, ..., and by seed why one could not be made. Raises CaseError.
 
@@ -99,9 +99,7 @@ def settle(
 
     numbers = range(1, 2 if case.resolved["particle"] else seeds + 1)
     packings, unsettled = [], {}
-    with ThreadPoolExecutor(
-        jobs or cores()
-    ) as pool:  # leaving the loop early cancels what has not begun
+    with ThreadPoolExecutor(jobs) as pool:  # leaving the loop early cancels what has not begun
         for seed, made in zip(numbers, pool.map(make, numbers)):
             if isinstance(made, Packing):
                 packings.append(made)
@@ -138,6 +136,11 @@ def write_inputs(
 def cores() -> int:
     """How many processes run at a time here, unless it is said otherwise."""
     return len(os.sched_getaffinity(0))
+
+
+def here(jobs: int | None, profile: str | None) -> int:
+    """How many processes run on this machine at a time: with a profile, `jobs` are the cluster's."""
+    return cores() if profile or not jobs else jobs
 
 
 def where(jobs: int | None, profile: str | None) -> str:

@@ -129,7 +129,7 @@ def _told(
 
 
 def settled(
-    case: Case, seeds: int, workspace: Workspace, jobs: int | None, display: ProgressDisplay
+    case: Case, seeds: int, workspace: Workspace, jobs: int, display: ProgressDisplay
 ) -> list[Packing]:
     """The packings of seeds 1, 2, ... Raises CaseError, and SolverError where one could not be made."""
     packings, unsettled = settle(case, seeds, workspace, jobs, display)

@@ -24,6 +24,7 @@ from .watch import Progress, Watch, outcomes
 
 POLL_S = 0.1
 PROGRESS_S = 0.5
+LATENCY_S = 60.0  # until a run finished elsewhere is seen here: network file systems cache
 JOURNAL = "journal"
 
 
@@ -56,16 +57,25 @@ def run_ensemble(
             waiting[id(request)] = run
     if waiting:
         said = _work(waiting.values(), folder, jobs, on_progress, profile)
+        deadline = time.monotonic() + LATENCY_S
         for number, run in waiting.items():
-            results[number] = _result(run, shelf, said)
+            results[number] = _result(run, shelf, said[run.name], deadline)
     shelf.close()
     return [results[id(request)] for request, _ in requests]
 
 
-def _result(run: Run, shelf: Shelf, said: dict[str, dict]) -> RunResult:
-    if shelf.take(run):
+def _result(run: Run, shelf: Shelf, outcome: dict, deadline: float) -> RunResult:
+    """What became of it, by what is there and by the `outcome` that its task told."""
+    while not (there := shelf.take(run)) and not outcome["failure"]:
+        if time.monotonic() > deadline:
+            unseen = (
+                f"{run.engine.name} was finished by its task, but {run.folder} cannot be read here as a whole run: repeat "
+                "the command, which takes it up once it can"
+            )
+            return RunResult(run.request, None, unseen, "failed")
+        time.sleep(POLL_S)
+    if there:
         return RunResult(run.request, run.folder, None, "done")
-    outcome = said[run.name]
     return RunResult(
         run.request, None, outcome["failure"], outcome["status"], outcome["exit_status"]
     )
@@ -78,7 +88,7 @@ def _work(
     on_progress: Callable[[Progress], None],
     profile: str | None,
 ) -> dict[str, dict]:
-    """Has Snakemake make the runs; says by their names what became of those that are not there now."""
+    """Has Snakemake make the runs; says by their names what their tasks told of them."""
     planned = [
         PlannedRun(run.request, run.out_dir, run.name, run.key, run.engine.expected_s(run.case))
         for run in runs
@@ -92,18 +102,16 @@ def _work(
         snakemake.cancel()
         for out_dir in {run.out_dir for run in planned}:
             clear_away(out_dir / "runs")
+    silence = _silence(snakemake, ending)
     silent = {
-        "status": "failed",
-        "failure": _silence(snakemake, ending),
-        "exit_status": None,
-    }
-    said = outcomes(call, planned)
-    return {
-        run.name: outcome
-        if (outcome := said.get(run.name)) and outcome["failure"]
-        else silent | {"failure": f"{run.request.engine_name} {silent['failure']}"}
+        run.name: {
+            "status": "failed",
+            "failure": f"{run.request.engine_name} {silence}",
+            "exit_status": None,
+        }
         for run in planned
     }
+    return silent | outcomes(call, planned)
 
 
 def _wait(snakemake: Snakemake, watch: Watch, on_progress: Callable[[Progress], None]) -> Ending:

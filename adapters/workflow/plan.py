@@ -11,11 +11,13 @@ from pathlib import Path
 
 from ..case import Case
 from ..files import write_whole
+from ..one_run import Limits
 from ..packing import Packing
 from ..run_folder import RunRequest
 
 PLAN = "plan.json"
 STATUS = "status"  # folder of what each task says of its runs
+AROUND_S = 60.0  # beside the process of a run: starting Python, writing the input and the dataset
 DONE = "done"  # folder of what Snakemake waits for: a file per task with nothing left to try again
 
 
@@ -47,6 +49,11 @@ class Group:
         return sum(run.expected_s for run in self.runs)
 
     @property
+    def limit_s(self) -> float:
+        """Wall time for schedulers that want a limit: each run gives up by itself before."""
+        return sum(AROUND_S + Limits().allowed_s(run.expected_s) for run in self.runs)
+
+    @property
     def threads(self) -> int:
         return max(run.request.ranks for run in self.runs)
 
@@ -61,6 +68,7 @@ def write_plan(groups: Sequence[Group], journal: Path, folder: Path) -> None:
         "groups": {
             group.name: {
                 "expected_s": group.expected_s,
+                "limit_s": group.limit_s,
                 "threads": group.threads,
                 "runs": [_to_json(run) for run in group.runs],
             }

@@ -1,11 +1,13 @@
-"""Finished runs and their gates: those on contacts wait for the native run on the same bed."""
+"""Finished runs and their gates: those on contacts wait for the native run on the same bed.
+
+A comparison sets these gates anew, among the runs that it has; here they are set for people, and for `crossdem explain`.
+"""
 
 from __future__ import annotations
 
 from ..dataset import Dataset
 from ..gates import REFERENCE, contacts_at_rest, with_gates
 from ..one_run import Run
-from ..run import bed
 
 
 class Shelf:
@@ -40,3 +42,8 @@ class Shelf:
         if gated.manifest != dataset.manifest:
             gated.write_manifest(run.folder)
         return True
+
+
+def bed(run: Run) -> tuple[str, str]:
+    """What names the bed that a run loads: variants of a case share their packings, and rest differently."""
+    return run.case.run_hash, run.request.packing.hash

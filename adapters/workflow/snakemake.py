@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import os
+import shlex
 import signal
 import sys
 from pathlib import Path
@@ -18,10 +19,13 @@ SHIPPED_PROFILES = ("slurm",)  # folders beside this file
 GRACE_S = 5.0  # to end tasks and their engines
 GRACE_ON_CLUSTER_S = 60.0  # to take back what was handed in
 LAST_LINES = 5
+UNSAFE = frozenset(
+    "'\"$`\\\n"
+)  # in a path that Snakemake puts into a job's script in quotes of its own
 
 
 class WorkflowError(Exception):
-    """Snakemake is missing, or a profile."""
+    """Snakemake is missing, or a profile, or it cannot work in the folder."""
 
 
 def version() -> str:
@@ -41,6 +45,11 @@ class Snakemake:
         Raises WorkflowError, OSError.
         """
         version()
+        if profile and (found := UNSAFE.intersection(str(call.absolute()))):
+            raise WorkflowError(
+                f"{call.absolute()}: with --profile, Snakemake can work in no folder with {' '.join(sorted(found))} in its "
+                "path: choose another with --out"
+            )
         self.log = call / LOG
         self._grace_s = GRACE_ON_CLUSTER_S if profile else GRACE_S
         command = [
@@ -52,9 +61,12 @@ class Snakemake:
         ]
         root = Path(crossdem.__file__).resolve().parent
         paths = [str(root), *filter(None, [os.environ.get("PYTHONPATH")])]
-        self._process = Process(
-            command, Path.cwd(), {"PYTHONPATH": os.pathsep.join(paths)}, self.log
-        )
+        environment = {
+            "PYTHONPATH": os.pathsep.join(paths),
+            "SNAKEMAKE_PROFILE": "",  # a user's own, which Snakemake would add to what it is told here
+        }
+        # In the call's folder, as Snakemake prefers a file found where it is started to one of the profile.
+        self._process = Process(command, call, environment, self.log)
 
     def poll(self) -> Ending | None:
         return self._process.poll()
@@ -84,4 +96,10 @@ def _on_cores(jobs: int) -> list[str]:
 
 
 def _on_cluster(profile: str, jobs: int | None) -> list[str]:
-    return ["--profile", profile_folder(profile), *(["--jobs", str(jobs)] if jobs else [])]
+    command = ["--profile", profile_folder(profile), *(["--jobs", str(jobs)] if jobs else [])]
+    if profile in SHIPPED_PROFILES:
+        scripts = HERE / profile
+        command += ["--jobscript", str(scripts / "jobscript.sh")]
+        command += ["--cluster-status", shlex.quote(str(scripts / "status"))]  # goes to a shell
+        command += ["--cluster-cancel", str(scripts / "cancel")]
+    return command

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 from ..files import write_whole
+from ..gates import REFERENCE
 from ..run import RunResult, look_up, run_all
 from ..solver import BEYOND_REASON
 from .plan import DONE, STATUS, PlannedRun, read_group
@@ -50,8 +51,9 @@ def _report(result: RunResult) -> dict:
 
 
 def _is_worth_another_try(result: RunResult) -> bool:
-    """Unless it is there, or a motion beyond reason, which is the same every time."""
-    return result.failure is not None and result.exit_status != BEYOND_REASON
+    """Unless it is there, or a motion beyond reason of the native solver, which is the same every time."""
+    beyond_reason = result.exit_status == BEYOND_REASON and result.request.engine_name == REFERENCE
+    return result.failure is not None and not beyond_reason
 
 
 if __name__ == "__main__":

@@ -102,7 +102,7 @@ def test_ranks_listen_in_a_network_of_their_own_only(started, tmp_path):
     assert networks != {os.readlink("/proc/self/ns/net")}
 
 
-def test_ranks_do_not_outlive_the_process_that_started_them(started, tmp_path):
+def test_nothing_of_the_ranks_outlives_the_process_that_started_them(started, tmp_path):
     command, folder, environment = started
     text = f"""
 import time
@@ -116,6 +116,11 @@ time.sleep(600)
     mpirun = int(caller.stdout.readline())
     wait_for(lambda: len(ranks_of(mpirun)) == RANKS)
     ranks = ranks_of(mpirun)
+    memory = Path(f"/proc/{mpirun}/root/dev/shm")
+    wait_for(
+        lambda: len(list(memory.glob("vader_segment.*"))) == RANKS and any(memory.glob("ompi.*"))
+    )
+    assert memory.stat().st_dev != Path("/dev/shm").stat().st_dev, "what is left there stays there"
     os.kill(caller.pid, signal.SIGKILL)
     caller.wait()
     wait_for(lambda: not any(map(alive, [mpirun, *ranks])), "some go on")

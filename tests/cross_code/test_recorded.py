@@ -28,7 +28,6 @@ ROOT = Path(__file__).parents[2]
 CASE = ROOT / "reference_cases" / "bar_penetration.toml"
 EXPECTED = ROOT / "reference_cases" / "expected"
 CALIBRATION = EXPECTED / "bar_penetration" / "calibration.json"
-NATIVE_RUNS = 2  # run again
 MOST_BYTES = 10_000_000  # of all records
 
 
@@ -68,37 +67,36 @@ def test_the_judge_is_as_good_as_its_calibration_says(case, recorded):
     assert not misses(found)
 
 
-def test_recorded_runs_come_out_again(case, recorded, tmp_path):
+def test_recorded_runs_come_out_again(recorded, tmp_path):
     draw = int(os.environ.get("CROSSDEM_DRAW", random.SystemRandom().randrange(10**6)))
-    runs = _drawn(recorded, random.Random(draw))
-    print(f"CROSSDEM_DRAW={draw}: {', '.join('-'.join(map(str, run)) for run in runs)}")
+    chosen = _drawn(recorded, random.Random(draw))
+    names = [f"{_variant(made)} {'-'.join(map(str, run))}" for made, run in chosen]
+    print(f"CROSSDEM_DRAW={draw}: {', '.join(names)}")
     requests = [
-        (RunRequest(case, packing_of(recorded, run, tmp_path / "packings"), run[0]), tmp_path)
-        for run in runs
+        (RunRequest(made.case, packing_of(made, run, tmp_path / _variant(made)), run[0]), tmp_path)
+        for made, run in chosen
     ]
     results = run_ensemble(requests, tmp_path / "workflow", len(os.sched_getaffinity(0)))
-    for run, result in zip(runs, results):
-        assert not result.failure, (run, result.failure)
-        found = difference(recorded, run, Dataset.read(result.dataset_folder))
-        assert not found, f"CROSSDEM_DRAW={draw}: {run}: {found}"
+    for name, (made, run), result in zip(names, chosen, results):
+        assert not result.failure, (name, result.failure)
+        found = difference(made, run, Dataset.read(result.dataset_folder))
+        assert not found, f"CROSSDEM_DRAW={draw}: {name}: {found}"
 
 
 def _drawn(recorded, draw):
-    """A few native runs, and one of another engine that is here: the longer one takes, the more seldom."""
-    by_engine = {}
-    for run, about in recorded.ensemble.manifests.items():
-        by_engine.setdefault(run[0], []).append((run, about["cpu_s"]))
-    others = [
-        entry
-        for name in by_engine
-        if name != REFERENCE and _here(name)
-        for entry in by_engine[name]
+    """A native run of the case, one of a variant, and one of another engine that is here, whichever takes longer."""
+    others = [made for made in map(Record.read, variants()) if _variant(made) != _variant(recorded)]
+    engines = [name for name in recorded.ensemble.engines if name != REFERENCE and _here(name)]
+    wanted = [(recorded, REFERENCE), (draw.choice(others), REFERENCE)]
+    wanted += [(recorded, draw.choice(engines))] if engines else []
+    return [
+        (made, draw.choice([run for run in made.ensemble.manifests if run[0] == engine]))
+        for made, engine in wanted
     ]
-    runs = draw.sample([run for run, _ in by_engine[REFERENCE]], NATIVE_RUNS)
-    if others:
-        weights = [1 / cpu_s**2 for _, cpu_s in others]
-        runs += [draw.choices([run for run, _ in others], weights)[0]]
-    return runs
+
+
+def _variant(made):
+    return ",".join(made.about["case"]["changes"]) or "default"
 
 
 def _rounded(number):

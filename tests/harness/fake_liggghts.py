@@ -39,7 +39,7 @@ def main():
         for step in [first, *range(first // sample * sample + sample, end + 1, sample)]:
             if is_crash and step > start:
                 print("ERROR: Lost atoms: original 40 current 39 (thermo.cpp:389)", flush=True)
-                sys.exit(1)
+                sys.exit(int(os.environ.get("FAKE_STATUS", "1")))
             if FAULT == "crash while resting":
                 os.abort()
             if FAULT == "hang" and step > start:

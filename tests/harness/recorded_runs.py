@@ -5,11 +5,11 @@ import hashlib
 import pandas as pd
 from synthetic import case, dataset
 
-from crossdem.adapters.gates import contacts_at_rest
+from crossdem.adapters.machine import machine_facts
 from crossdem.adapters.packing import COLUMNS
 from crossdem.compare.ensemble import Ensemble
-from crossdem.compare.fingerprint import content_sha256, machine_facts
-from crossdem.compare.recorded import CONTACTS, CONTENT, DATE, Record
+from crossdem.compare.fingerprint import content_sha256
+from crossdem.compare.recorded import CONTENT, DATE, Record
 
 
 def packing_text(seed):
@@ -43,13 +43,7 @@ def recorded_datasets(run_case, engines=("native", "liggghts"), seeds=2, twins=1
 def record(run_case=None, **which):
     run_case = run_case or case()
     runs = list(recorded_datasets(run_case, **which))
-    facts = {
-        (run.engine, run.seed, run.twin): {
-            CONTENT: content_sha256(run),
-            CONTACTS: contacts_at_rest(run),
-        }
-        for run in runs
-    }
+    facts = {(run.engine, run.seed, run.twin): {CONTENT: content_sha256(run)} for run in runs}
     ensemble = Ensemble.of(runs)
     manifests = {run: about | facts[run] for run, about in ensemble.manifests.items()}
     seeds = sorted({run.seed for run in runs})
@@ -59,5 +53,5 @@ def record(run_case=None, **which):
         Ensemble(ensemble.endpoints, ensemble.profiles, ensemble.fields, manifests),
         {seed: packing_text(seed) for seed in seeds},
         {seed: about | {"seed": seed} for seed in seeds},
-        {DATE: "2026-01-02T03:04:05+00:00", "machine": machine_facts()},
+        {DATE: "2026-01-02T03:04:05+00:00", "schema_version": 1, "machine": machine_facts()},
     )

@@ -228,6 +228,34 @@ def test_an_output_folder_that_cannot_be_written(tmp_path, place):
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
+@pytest.mark.parametrize("place", ["/proc/none/records", "file/records", "new/" + "x" * 300])
+def test_a_folder_of_records_that_cannot_be_written_is_told_before_anything_runs(tmp_path, place):
+    (tmp_path / "file").write_text("")
+    ended = crossdem("record", REFERENCE, "--engines", "native", "-o", place, cwd=tmp_path)
+    assert ended.returncode == 2
+    assert "cannot be written" in ended.stderr and "--record" in ended.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_variant_that_would_be_recorded_elsewhere(tmp_path):
+    ended = crossdem("record", REFERENCE, "--variant", 'title="../mine"', cwd=tmp_path)
+    assert ended.returncode == 2
+    assert "--variant title=" in ended.stderr and "leave out the /" in ended.stderr
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "option",
+    [("--replay",), ("--profile", "slurm"), ("--mpi-ranks", "2")],
+    ids=lambda words: words[0],
+)
+@pytest.mark.parametrize("of", ["a folder", "one case"])
+def test_an_option_for_beds_on_the_ladder(refused, option, of):
+    ladder = REFERENCE.parent / "micro"
+    said = refused(ladder if of == "a folder" else ladder / "free_fall.toml", *option)
+    assert f"{option[0]}: not for cases of particles placed by hand" in said
+
+
 @pytest.mark.parametrize("exists", [False, True])
 def test_a_fault_that_shows_only_while_settling_leaves_nothing(tmp_path, exists):
     solver = tmp_path / "solver"

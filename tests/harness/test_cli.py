@@ -1,7 +1,9 @@
 """The command line on good input: exit codes, output folder, reuse, interruption. Only the native engine runs here."""
 
+import errno
 import fcntl
 import json
+import os
 import signal
 import subprocess
 import time
@@ -9,9 +11,11 @@ from importlib.metadata import version
 
 import pytest
 from command_line import REFERENCE, ROOT, crossdem
+from test_workflow import alive, wait_for
 
 from crossdem import ExitCode, __version__
 from crossdem.adapters.case import load_case
+from crossdem.adapters.solver import find_solver
 
 SMALL = ["particles.count=100", "time.penetration_s=0.2", "time.rest_s=0.1"]
 OVERRIDES = [word for override in SMALL for word in ("--set", override)]
@@ -201,6 +205,25 @@ def test_an_interrupted_run_ends_at_once_and_leaves_nothing_that_looks_complete(
     assert not list(out.glob("runs/[!.]*"))
 
 
+def test_a_kill_while_settling_leaves_no_solver_and_the_next_call_no_unfinished_packing(tmp_path):
+    solver, mark, out = tmp_path / "solver", tmp_path / "process", tmp_path / "out"
+    settle = (
+        f'[ "$1" = pack ] && {{ echo $$ >"{mark}.new"; mv "{mark}.new" "{mark}"; exec sleep 600; }}'
+    )
+    solver.write_text(f'#!/bin/sh\n{settle}\nexec {find_solver()} "$@"\n')
+    solver.chmod(0o755)
+    command = [ROOT / "crossdem", "run", *QUICK, "--seeds", "1", "--out", out]
+    running = subprocess.Popen(command, env={**os.environ, "CROSSDEM_SOLVER": str(solver)})
+    wait_for(mark.exists)
+    running.kill()
+    running.wait()
+    wait_for(lambda: not alive(int(mark.read_text())), "the solver goes on")
+    assert len(list((out / "packings").glob(".seed1-*"))) == 1
+    ended = crossdem(*command[1:])
+    assert ended.returncode == 0, ended.stderr
+    assert len(list((out / "packings").iterdir())) == 1
+
+
 def test_files_of_the_user_are_not_taken_for_modules_of_the_same_name(tmp_path):
     for name in ("snakemake.py", "pandas.py", "crossdem.py"):
         (tmp_path / name).write_text("raise SystemExit('taken for a module')")
@@ -214,6 +237,18 @@ def test_two_at_a_time_do_not_share_an_output_folder(finished):
         ended = crossdem("run", *QUICK, "--seeds", "1", "--out", finished)
     assert ended.returncode == ExitCode.BAD_INPUT
     assert "another crossdem is writing to it" in ended.stderr
+
+
+def test_what_the_system_refuses_is_no_bug(monkeypatch, capsys):
+    from crossdem.compare import cli, commands
+
+    def full(**_):
+        raise OSError(errno.ENOSPC, "No space left on device", "out/plan.json")
+
+    monkeypatch.setattr(commands, "resolve", full)
+    assert cli.main(["resolve", str(REFERENCE)]) == ExitCode.SYSTEM
+    [line] = capsys.readouterr().err.splitlines()
+    assert "No space left on device: 'out/plan.json'" in line and "repeat the command" in line
 
 
 def test_a_bug_is_called_a_bug(tmp_path, monkeypatch, capsys):

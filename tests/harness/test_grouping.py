@@ -46,6 +46,13 @@ def test_a_task_has_as_many_threads_as_its_runs_have_ranks():
     assert [(group.threads, len(group.runs)) for group in groups] == [(1, 2), (2, 2)]
 
 
+def test_the_time_limit_of_a_task_is_above_those_of_its_runs_together():
+    [short] = grouped(planned(*[2.0] * 15), jobs=1)
+    assert 15 * 300 < short.limit_s < 15 * 400
+    [long] = grouped(planned(100.0), jobs=1)
+    assert 2000 < long.limit_s < 2100
+
+
 def test_every_run_is_in_one_task_whose_name_is_its_own():
     runs = planned(*range(1, 100))
     groups = grouped(runs, jobs=3)

@@ -1,7 +1,11 @@
 """The recorded ensemble: it gives back what was put in, and says what was changed since."""
 
+import os
 import shutil
+import signal
 import subprocess
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -14,7 +18,7 @@ from crossdem.adapters.workspace import WorkspaceError
 from crossdem.compare.fingerprint import content_sha256
 from crossdem.compare.record_command import plans_of
 from crossdem.compare.recorded import Record, RecordError, find_record
-from crossdem.compare.reproduced import difference, strangeness
+from crossdem.compare.reproduced import difference, same_program, strangeness
 
 FILES = (
     *("SHA256SUMS", "case.json", "endpoints.csv", "fields.csv.gz", "manifest.json"),
@@ -106,6 +110,63 @@ def test_a_case_is_found_by_what_runs_depend_on_and_not_by_its_checks(written):
     assert find_record(stricter, written[1]).seeds == (1, 2)
 
 
+def test_only_the_record_of_the_case_need_be_whole(written):
+    _, folder = written
+    other, cut = (folder / "bar_penetration" / name for name in ("other", ".default.partial"))
+    for place in (other, cut):
+        shutil.copytree(home(folder), place)
+        (place / "runs.json").write_text("torn")
+    (other / "case.json").write_bytes(case(gravity_m_s2=1.6).canonical + b"\n")
+    assert find_record(case(), folder).seeds == (1, 2)
+    shutil.rmtree(home(folder))
+    with pytest.raises(RecordError, match="other: not as it was recorded"):
+        find_record(case(), folder)
+    shutil.rmtree(other)
+    with pytest.raises(RecordError, match="no record of bar_penetration"):
+        find_record(case(), folder)
+
+
+@pytest.mark.parametrize("spoilt", ["manifest.json", "packings.json"])
+def test_a_file_that_says_something_else_is_told(written, spoilt):
+    folder = home(written[1])
+    (folder / spoilt).write_text("[]\n")
+    sums = subprocess.run(["sha256sum", *FILES[1:]], cwd=folder, capture_output=True, check=True)
+    (folder / "SHA256SUMS").write_bytes(sums.stdout)
+    with pytest.raises(RecordError, match="crossdem record. makes it anew"):
+        Record.read(folder)
+
+
+def test_a_record_without_files_is_told(written):
+    folder = home(written[1])
+    for path in folder.iterdir():
+        path.unlink()
+    (folder / "SHA256SUMS").write_text("")
+    with pytest.raises(RecordError, match="lacks 'manifest.json'"):
+        Record.read(folder)
+    with pytest.raises(RecordError, match="records of default"):
+        find_record(case(), written[1])
+
+
+def test_a_record_of_another_layout_is_told(written):
+    made, folder = written
+    replace(made, about=made.about | {"schema_version": 2}).write(home(folder))
+    with pytest.raises(RecordError, match="its layout is 2, and this crossdem reads 1"):
+        find_record(case(), folder)
+
+
+def test_a_kill_while_a_record_is_replaced_loses_none(written, monkeypatch):
+    made, folder = written
+    monkeypatch.setattr(Path, "rename", lambda path, to: os.kill(os.getpid(), signal.SIGKILL))
+    process = os.fork()
+    if process == 0:
+        made.write(home(folder))
+    assert os.WIFSIGNALED(os.waitpid(process, 0)[1])
+    assert find_record(case(), folder).seeds == (1, 2)
+    monkeypatch.undo()
+    made.write(home(folder))
+    assert [path.name for path in home(folder).parent.iterdir()] == ["default"]
+
+
 def test_a_case_without_a_record_is_told_what_there_is_and_what_to_do(written):
     with pytest.raises(RecordError, match="records of default.*crossdem record"):
         find_record(case(gravity_m_s2=1.6), written[1])
@@ -153,6 +214,21 @@ def test_an_engine_of_another_version_may_differ_as_its_twins_do_and_no_more(wri
     assert difference(made, run, again) is None
     again.resistance[forces] *= 5
     assert "mean_resistance_N" in difference(made, run, again)
+
+
+def test_the_machine_that_counts_is_that_of_the_run(written):
+    made, _ = written
+    run = "liggghts", 2, 1
+    [again] = [
+        one
+        for one in recorded_datasets(case(), engines=("liggghts",))
+        if (one.engine, one.seed, one.twin) == run
+    ]
+    assert same_program(made, run, again)
+    elsewhere = made.ensemble.manifests[run] | {"machine": {"machine": "another"}}
+    manifests = made.ensemble.manifests | {run: elsewhere}
+    on_cluster = replace(made, ensemble=replace(made.ensemble, manifests=manifests))
+    assert not same_program(on_cluster, run, again)
 
 
 def test_one_recorded_twin_alone_tells_nothing_of_scatter():

@@ -4,15 +4,15 @@ import json
 
 import pytest
 from recorded_runs import packing_hash, record
-from synthetic import REFERENCE_CASE, case, dataset
+from synthetic import REFERENCE_CASE, dataset
 
 from crossdem import ExitCode
 from crossdem.adapters.case import load_case
 from crossdem.adapters.workspace import Workspace
 from crossdem.compare.cli import main
 from crossdem.compare.comparison import compare_runs
-from crossdem.compare.recorded import Record, RecordError
-from crossdem.compare.replay import gated, replayed, restore_packings
+from crossdem.compare.recorded import RecordError
+from crossdem.compare.replay import replayed, restore_packings
 
 
 @pytest.fixture(scope="module")
@@ -34,8 +34,9 @@ def replay(records, out, *options):
 
 def test_recorded_engines_are_compared_where_there_is_none(records, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert replay(records, tmp_path / "out", "--engines", "none") != ExitCode.BAD_INPUT
+    ended = replay(records, tmp_path / "out", "--engines", "none")
     report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert ended == report["verdict"]["exit_code"]
     assert {run["engine"] for run in report["runs"]} == {"native", "liggghts"}
     assert report["checks"] and not (tmp_path / "out" / "runs").exists()
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
@@ -70,7 +71,9 @@ def test_a_case_of_other_runs_is_refused(records, tmp_path, capsys):
 
 def test_another_margin_needs_no_other_record(records, tmp_path):
     changed = ("--set", "title=Mine", "--engines", "none")
-    assert replay(records, tmp_path / "out", *changed) != ExitCode.BAD_INPUT
+    ended = replay(records, tmp_path / "out", *changed)
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert (ended, report["case"]["title"]) == (report["verdict"]["exit_code"], "Mine")
 
 
 def test_runs_made_here_start_from_the_recorded_packings(recorded, tmp_path):
@@ -81,21 +84,42 @@ def test_runs_made_here_start_from_the_recorded_packings(recorded, tmp_path):
         assert text == recorded.packings[seed].encode()
 
 
-def test_a_recorded_native_run_sets_the_gate_on_contacts(recorded, tmp_path):
-    recorded.write(tmp_path / "record")
-    others = replayed(Record.read(tmp_path / "record"), ["liggghts"], 1, 0)
-    here = dataset(case(), "liggghts", packing_hash=packing_hash(1))
+def test_a_recorded_native_run_sets_the_gate_on_contacts_of_a_run_made_here(recorded):
+    others = replayed(recorded, ["liggghts"], 1, 0)
+    here = dataset(recorded.case, "liggghts", packing_hash=packing_hash(1))
     here.resistance["contacts"] = 1600  # of 1700 in the native run
-    (found,) = gated([here], others)
-    assert [
-        gate["passed"] for gate in found.manifest["gates"] if gate["name"] == "contacts_share"
-    ] == [False]
+    comparison = compare_runs(recorded.case, [here], recorded=others)
+    assert "1600 contacts, 1700 in the native run" in failed_contacts(comparison)["liggghts", 1, 0]
+
+
+def test_a_native_run_made_here_sets_the_gate_on_contacts_of_recorded_runs(recorded):
+    """Whatever the native run said that they were recorded beside."""
+    others = replayed(recorded, ["native"], 2, 0)
+    here = [dataset(recorded.case, seed=seed, packing_hash=packing_hash(seed)) for seed in (1, 2)]
+    here[1].resistance["contacts"] = 1600
+    for about in others.manifests.values():
+        passed = {"name": "contacts_share", "value": 0, "limit": 0.01, "passed": True}
+        about["gates"] = [*about["gates"], passed | {"message": "as recorded"}]
+    comparison = compare_runs(recorded.case, here, recorded=others)
+    failed = failed_contacts(comparison)
+    assert failed.keys() == {("liggghts", 2, 0)}
+    assert "1700 contacts, 1600 in the native run" in failed["liggghts", 2, 0]
+    assert comparison.verdict.exit_code == ExitCode.INCONCLUSIVE
+
+
+def failed_contacts(comparison):
+    """By run, what its gate on contacts says, of which each run has one."""
+    gates = {
+        run: [gate for gate in about["gates"] if gate["name"] == "contacts_share"]
+        for run, about in comparison.ensemble.manifests.items()
+    }
+    return {run: gate["message"] for run, [gate] in gates.items() if not gate["passed"]}
 
 
 def test_a_run_made_here_is_judged_against_recorded_ones(recorded):
     others = replayed(recorded, ["native"], 2, 0)
     here = [dataset(recorded.case, seed=seed, packing_hash=packing_hash(seed)) for seed in (1, 2)]
-    comparison = compare_runs(recorded.case, gated(here, others), recorded=others)
+    comparison = compare_runs(recorded.case, here, recorded=others)
     assert comparison.engines == ("native", "liggghts")
     assert comparison.results and not any(result.obstacles for result in comparison.results)
     assert comparison.recorded == {("liggghts", 1, 0), ("liggghts", 2, 0)}

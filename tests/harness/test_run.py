@@ -15,6 +15,7 @@ from few_particles import Disc, few_particles
 from small_case import small_case
 
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.machine import machine_facts
 from crossdem.adapters.one_run import Limits
 from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run import RunRequest, run_all
@@ -41,6 +42,7 @@ def test_a_whole_run_becomes_a_dataset_with_inputs_log_and_readme(fake, case, pa
     assert run.manifest["engine_version"] == "LIGGGHTS-PUBLIC 3.8.0-fake"
     assert str(tmp_path) not in (result.dataset_folder / "manifest.json").read_text()
     assert run.manifest["command"][0] == "stdbuf"
+    assert run.manifest["machine"] == machine_facts()
 
 
 @pytest.mark.parametrize(
@@ -184,39 +186,6 @@ def test_progress_grows_to_one(fake, case, packing, tmp_path):
     shares = [share for _, share, _ in told]
     assert shares == sorted(shares) and shares[-1] == 1.0
     assert any(0 < share < 1 and seconds_left > 0 for _, share, seconds_left in told)
-
-
-def test_the_contacts_of_the_others_are_held_against_the_native_run(fake, case, packing, tmp_path):
-    requests = [RunRequest(case, packing, name) for name in ("liggghts", "native")]
-    fake_run, native = (
-        Dataset.read(r.dataset_folder) for r in run_all(requests, tmp_path / "out", 2)
-    )
-    at_rest = native.resistance["contacts"].iloc[0]
-    [gate] = [gate for gate in fake_run.manifest["gates"] if gate["name"] == "contacts_share"]
-    assert gate["value"] == pytest.approx(abs(70 - at_rest) / at_rest)
-    assert f"{at_rest} in the native run" in gate["message"]
-
-
-def test_a_reused_run_gets_the_gate_that_a_later_native_run_allows(fake, case, packing, tmp_path):
-    first = Dataset.read(liggghts(case, packing, tmp_path / "out").dataset_folder)
-    requests = [RunRequest(case, packing, name) for name in ("liggghts", "native")]
-    reused, native = run_all(requests, tmp_path / "out", 2)
-    assert (reused.status, native.status) == ("reused", "done")
-    names = [gate["name"] for gate in Dataset.read(reused.dataset_folder).manifest["gates"]]
-    assert names == ["rest_kinetic_energy_J", "contacts_share", "no_particle_lost"]
-    assert len(first.manifest["gates"]) == 2
-    assert len(fake.process_ids()) == 1
-
-
-def test_a_reused_run_keeps_its_gate_on_contacts_when_it_is_asked_for_without_native(
-    fake, case, packing, tmp_path
-):
-    requests = [RunRequest(case, packing, name) for name in ("liggghts", "native")]
-    before = Dataset.read(run_all(requests, tmp_path / "out", 2)[0].dataset_folder)
-    alone = liggghts(case, packing, tmp_path / "out")
-    assert alone.status == "reused"
-    gates = Dataset.read(alone.dataset_folder).manifest["gates"]
-    assert gates == before.manifest["gates"] and len(gates) == 3
 
 
 def test_ctrl_c_ends_the_engines_and_leaves_no_run(fake, case, packing, tmp_path):

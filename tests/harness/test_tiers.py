@@ -5,6 +5,7 @@ from click.testing import CliRunner
 from command_line import REFERENCE, crossdem
 
 from crossdem import ExitCode
+from crossdem.adapters.case import CaseError
 from crossdem.adapters.dataset import Dataset
 from crossdem.compare import cli, commands
 
@@ -42,6 +43,26 @@ def test_a_profile_has_its_own_number_of_jobs(monkeypatch, options, jobs):
     ended = CliRunner().invoke(cli.cli, ["run", str(REFERENCE), *options])
     assert ended.exit_code == 0, ended.output
     assert taken["jobs"] == jobs
+
+
+def test_the_number_of_jobs_of_a_cluster_is_not_that_of_processes_here(monkeypatch, tmp_path):
+    taken = []
+
+    def settle(*arguments):
+        taken.append(arguments[3])
+        return [], {}
+
+    def horizon_of_runs(*arguments):
+        taken.append(arguments[4])
+        raise CaseError(["far enough"])
+
+    monkeypatch.setattr("crossdem.compare.runs.settle", settle)
+    monkeypatch.setattr(commands, "horizon_of_runs", horizon_of_runs)
+    monkeypatch.setattr("crossdem.compare.runs.os.sched_getaffinity", lambda _: range(7))
+    for name, options in (("here", []), ("there", ["--profile", "slurm"])):
+        words = ["check", str(REFERENCE), "--jobs", "100", *options]
+        cli.main([*words, "--out", str(tmp_path / name)])
+    assert taken == [100, 100, 7, 7]
 
 
 def test_a_profile_that_is_not_there_is_bad_input(tmp_path):

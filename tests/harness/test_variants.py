@@ -7,7 +7,8 @@ from small_case import small_case
 
 from crossdem.adapters.case import CaseError, load_case, varied
 from crossdem.adapters.packing import make_packing
-from crossdem.adapters.run import RunRequest, run_all
+from crossdem.adapters.run import RunRequest
+from crossdem.adapters.workflow.ensemble import run_ensemble
 from crossdem.adapters.solver import BEYOND_REASON
 from crossdem.adapters.workspace import Workspace
 from crossdem.compare.progress import ProgressDisplay
@@ -94,8 +95,8 @@ def test_the_contacts_of_a_variant_are_no_reference_for_another(tmp_path):
     case = small_case("time.rest_s=0.02", "time.penetration_s=0.02")
     soft = varied(case, ["contact.particle_particle.normal_stiffness_N_m=10.0"])
     packing = make_packing(case, 1, tmp_path / "packing")
-    results = run_all([RunRequest(one, packing, "native") for one in (case, soft)], tmp_path, 1)
-    for result in results:
+    requests = [(RunRequest(one, packing, "native"), tmp_path) for one in (case, soft)]
+    for result in run_ensemble(requests, tmp_path / "workflow", 2):
         gates = {gate["name"]: gate for gate in _gates(result)}
         assert gates["contacts_share"]["value"] == 0
 

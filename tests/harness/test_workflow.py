@@ -12,12 +12,14 @@ from pathlib import Path
 
 import pytest
 from rich.console import Console
+from small_case import small_case
 
 from crossdem.adapters.attempt import Attempt, clear_away, machine
 from crossdem.adapters.dataset import Dataset
-from crossdem.adapters.one_run import Limits
+from crossdem.adapters.one_run import Limits, Run
 from crossdem.adapters.packing import make_packing, make_twin
 from crossdem.adapters.run import RunRequest, look_up
+from crossdem.adapters.solver import BEYOND_REASON
 from crossdem.adapters.workflow.ensemble import run_ensemble
 from crossdem.adapters.workflow.snakemake import WorkflowError
 from crossdem.adapters.workflow.watch import Progress
@@ -113,6 +115,40 @@ def test_a_run_that_fails_twice_is_a_failure_and_the_others_go_on(fake, case, pa
     assert (told[-1].done, told[-1].failed) == (1, 1)
 
 
+def test_what_a_status_means_to_the_native_solver_it_means_to_no_other(
+    fake, case, packings, out, monkeypatch
+):
+    monkeypatch.setenv("FAKE_STATUS", str(BEYOND_REASON))
+    fake.fault("crash once")
+    [result] = ensemble(case, packings[:1], ["liggghts"], out)
+    assert result.status == "done", result.failure
+
+
+def test_a_motion_beyond_reason_is_not_tried_again(packings, out):
+    wild = small_case("time.rest_s=0.02", "contact.particle_particle.normal_damping_N_s_m=1e3")
+    [result] = ensemble(wild, packings[:1], ["native"], out)
+    assert result.exit_status == BEYOND_REASON, result.failure
+    assert [len(how) for how in endings(out).values()] == [1]
+
+
+@pytest.mark.parametrize("looks, status", [(5, "done"), (10**6, "failed")])
+def test_a_finished_run_may_be_seen_here_later(case, packings, out, monkeypatch, looks, status):
+    """As on a file system that caches."""
+    seen, finished = [], Run.finished
+
+    def late(run):
+        seen.append(run)
+        return finished(run) if len(seen) > looks else None
+
+    monkeypatch.setattr(Run, "finished", late)
+    monkeypatch.setattr("crossdem.adapters.workflow.ensemble.LATENCY_S", 60 if looks == 5 else 0.3)
+    [result] = ensemble(case, packings[:1], ["native"], out)
+    assert result.status == status, result.failure
+    if status == "failed":
+        assert "native was finished by its task, but" in result.failure
+        assert "repeat the command" in result.failure
+
+
 def test_what_needs_no_process_is_answered_without_snakemake(packings, out, case, monkeypatch):
     monkeypatch.setenv("PATH", str(out))
     [missing] = ensemble(case, packings[:1], ["liggghts"], out)
@@ -125,10 +161,14 @@ def test_the_contacts_of_the_others_are_held_against_the_native_run(fake, case, 
     assert len(Dataset.read(alone.dataset_folder).manifest["gates"]) == 2
     results = ensemble(case, packings[:1], ["liggghts", "native"], out)
     assert [result.status for result in results] == ["reused", "done"]
+    native = Dataset.read(results[1].dataset_folder)
     gates = Dataset.read(alone.dataset_folder).manifest["gates"]
-    assert (
-        "in the native run" in {gate["name"]: gate["message"] for gate in gates}["contacts_share"]
-    )
+    at_rest = native.resistance["contacts"].iloc[0]
+    [gate] = [gate for gate in gates if gate["name"] == "contacts_share"]
+    assert gate["value"] == pytest.approx(abs(70 - at_rest) / at_rest)
+    assert f"{at_rest} in the native run" in gate["message"]
+    [again] = ensemble(case, packings[:1], ["liggghts"], out)
+    assert Dataset.read(again.dataset_folder).manifest["gates"] == gates and len(gates) == 3
     assert len(fake.process_ids()) == 1
 
 
@@ -139,6 +179,17 @@ def test_without_snakemake_it_says_how_to_get_it(packings, out, case, monkeypatc
     monkeypatch.setattr("importlib.metadata.version", missing)
     with pytest.raises(WorkflowError, match="apt install snakemake"):
         ensemble(case, packings[:1], ["native"], out)
+
+
+def test_a_profile_of_the_user_changes_nothing_here(case, packings, out, monkeypatch):
+    monkeypatch.setenv("SNAKEMAKE_PROFILE", "mine")
+    [result] = ensemble(case, packings[:1], ["native"], out)
+    assert result.status == "done", result.failure
+
+
+def test_a_folder_that_snakemake_cannot_hand_to_a_cluster_is_refused(case, packings, out):
+    with pytest.raises(WorkflowError, match="with --profile.*choose another with --out"):
+        ensemble(case, packings[:1], ["native"], out, profile="slurm")
 
 
 FRONT = """

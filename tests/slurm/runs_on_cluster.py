@@ -35,6 +35,7 @@ class RunsOnCluster:
             + [ROOT / "crossdem", "run", REFERENCE, "--engines", "native", "--profile", "slurm"]
             + ["--seeds", str(seeds), "--jobs", str(tasks), "--out", workspace]
             + [argument for override in case for argument in ("--set", override)],
+            cwd=workspace.parent,
             env={**cluster.environment, "CI": "true"},  # or Snakemake looks only every 10 s
             stdout=self._output.open("w"),
             stderr=subprocess.STDOUT,

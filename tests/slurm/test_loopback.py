@@ -5,6 +5,7 @@ from pathlib import Path
 import loopback
 import pytest
 from loopback import Loopback, LoopbackError
+from test_workflow import wait_for
 
 LISTENING = "0A"
 LOOPBACK = "0100007F"  # 127.0.0.1 as the kernel prints it
@@ -29,8 +30,7 @@ def test_two_clusters_stand_side_by_side_and_leave_no_process(cluster_folder):
         assert listening(daemons) == {LOOPBACK}
         job = one.call("sbatch", "--wrap", "sleep 600", "--output", "/dev/null")
         assert job.returncode == 0, job.stderr
-        while not one.job_processes():
-            pass
+        wait_for(one.job_processes)
         assert one.nodes() and not other.job_processes()
     assert not one.daemons() and not one.job_processes() and not other.daemons()
 

@@ -5,6 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from test_workflow import wait_for
 
 PROFILE = Path(__file__).parents[2] / "adapters" / "workflow" / "slurm"
 JOB = "7:crossdem-0123456789ab"
@@ -107,8 +108,7 @@ def test_submit_gives_up_on_a_job_that_slurm_refuses(call):
 def test_cancel_names_the_jobs_alone(call, tmp_path):
     cancelled = 'echo "$@" >part; mv part cancelled'
     assert call("cancel", JOB, "8:crossdem-1", scancel=cancelled) == ("", 0)
-    while not (tmp_path / "cancelled").exists():
-        pass
+    wait_for((tmp_path / "cancelled").exists)
     assert (tmp_path / "cancelled").read_text() == "--quiet 7 8\n"
 
 

@@ -10,6 +10,7 @@ from crossdem.adapters.dataset import Dataset
 
 SEEDS = 40
 LONGER = ("time.rest_s=10",)  # a second and a half per run
+ODD = "an out folder; {curly} * #"  # that no shell could be handed as it is
 
 
 def at_work(attempts, processes):
@@ -30,7 +31,7 @@ def check_that_each_run_was_published_once(runs, seeds):
 
 
 def test_forty_runs_survive_a_node_that_loses_power(cluster, tmp_path):
-    with RunsOnCluster(cluster, tmp_path / "out", SEEDS, 8, *LONGER) as runs:
+    with RunsOnCluster(cluster, tmp_path / ODD, SEEDS, 8, *LONGER) as runs:
         runs.wait_until(
             lambda attempts: any(attempt.how == "published" for attempt in attempts)
             and at_work(attempts, cluster.job_processes("node1"))
@@ -50,7 +51,10 @@ def test_forty_runs_survive_a_node_that_loses_power(cluster, tmp_path):
 
 def test_a_run_that_outlives_its_node_does_not_disturb_its_retry(cluster, tmp_path):
     seeds = 4
-    with RunsOnCluster(cluster, tmp_path / "out", seeds, seeds, "time.rest_s=25") as runs:
+    for name in ("status", "cancel", "jobscript.sh"):  # of the user, where crossdem is started
+        (tmp_path / name).write_text("#!/bin/sh\nexit 1\n")
+        (tmp_path / name).chmod(0o755)
+    with RunsOnCluster(cluster, tmp_path / ODD, seeds, seeds, "time.rest_s=25") as runs:
         runs.wait_until(lambda attempts: at_work(attempts, cluster.job_processes("node1")))
         cluster.kill_daemon("node1")
         orphans = cluster.job_processes("node1")
