@@ -52,7 +52,11 @@ class Contacts {
     double largest = 0.0;
     for (std::size_t i = 0; i < particles.count(); ++i)
       largest = std::max(largest, (particles.position[i] - listed_at_[i]).squaredNorm());
-    const double moved = std::sqrt(largest);
+    return outdated(std::sqrt(largest), surfaces);
+  }
+
+  /// The same; `moved` [m]: how far the farthest particle is from where it was listed.
+  [[nodiscard]] bool outdated(double moved, const Surfaces& surfaces) const {
     const double bar_moved = surfaces.bar ? surfaces.bar->travel() - bar_listed_at_ : 0.0;
     return moved + std::max(moved, bar_moved) > skin_;
   }
@@ -87,6 +91,7 @@ class Contacts {
   std::vector<Pair>& pairs() { return pairs_; }
   std::vector<OnSurface>& on_surfaces() { return on_surfaces_; }
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
+  [[nodiscard]] const std::vector<Vector2>& listed_at() const { return listed_at_; }
   [[nodiscard]] const std::vector<OnSurface>& on_surfaces() const { return on_surfaces_; }
 
  private:

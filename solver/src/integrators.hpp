@@ -12,6 +12,7 @@ namespace crossdem {
 struct Load {
   Vector2 force = Vector2::Zero();  // [N]
   double moment = 0.0;              // [N m], counter-clockwise
+  double work = 0.0;                // [J], f_n du_n + f_s du_s of the contacts that list the particle first
 };
 
 /// Eqs. (13)-(18): what a load does to the velocities within `dt`.

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "schemes/liggghts.hpp"
-#include "schemes/paper.hpp"
+#include "schemes/paper_batches.hpp"
 #include "schemes/yade.hpp"
 
 namespace crossdem {
@@ -14,8 +14,7 @@ std::unique_ptr<Stepper> make_stepper(const Case& setup, World& world) {
     Readings only_start_differs = choice.readings;  // these two concern the start, not the step
     only_start_differs.initial_displacement = {};
     only_start_differs.inertia = {};
-    if (only_start_differs == Readings{})
-      return std::make_unique<PaperStepper<PaperScheme>>(PaperScheme{}, choice.readings, world);
+    if (only_start_differs == Readings{}) return std::make_unique<BatchedPaperStepper>(choice.readings, world);
     return std::make_unique<PaperStepper<MixedScheme>>(MixedScheme{{choice.readings}, {choice.readings.integrator}},
                                                        choice.readings, world);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <sstream>
 
 #include "neighbours.hpp"
@@ -38,27 +39,34 @@ double moment_of_mass(const Particles& particles) {
 }  // namespace
 
 struct Simulation::State {
+  State(World of, std::unique_ptr<Stepper> by) : world(std::move(of)), stepper(std::move(by)) {}
   World world;
   std::unique_ptr<Stepper> stepper;
 };
 
-Simulation::Simulation(const Case& setup, Particles particles, std::optional<double> bar_tip) {
+World make_world(const Case& setup, Particles particles, std::optional<double> bar_tip) {
   if (particles.count() == 0) throw std::invalid_argument("a simulation needs particles");
-  state_ = std::make_unique<State>(State{.world = {.particles = std::move(particles),
-                                                   .surfaces = {.width = setup.container.width, .bar = {}},
-                                                   .particle_particle = setup.particle_particle,
-                                                   .particle_wall = setup.particle_wall,
-                                                   .gravity = setup.gravity,
-                                                   .dt = setup.time.step,
-                                                   .loads = {},
-                                                   .totals = {},
-                                                   .momentum_ledger = {},
-                                                   .energy_ledger = {}},
-                                         .stepper = nullptr});
-  World& w = state_->world;
+  World w{.particles = std::move(particles),
+          .surfaces = {.width = setup.container.width, .bar = {}},
+          .particle_particle = setup.particle_particle,
+          .particle_wall = setup.particle_wall,
+          .gravity = setup.gravity,
+          .dt = setup.time.step,
+          .loads = {},
+          .totals = {},
+          .contact_work = {},
+          .momentum_ledger = {},
+          .energy_ledger = {}};
+  w.contact_work.assign(w.particles.count(), 0.0);
   if (bar_tip) w.surfaces.bar.emplace(setup.bar.value(), *bar_tip);
   w.kinetic_limit = std::numeric_limits<double>::infinity();
   w.check();
+  return w;
+}
+
+Simulation::Simulation(const Case& setup, Particles particles, std::optional<double> bar_tip)
+    : state_(std::make_unique<State>(make_world(setup, std::move(particles), bar_tip), nullptr)) {
+  World& w = state_->world;
   state_->stepper = make_stepper(setup, w);
   w.kinetic_at_start = kinetic_energy(w.particles);
   w.momentum_at_start = momentum(w.particles);
@@ -106,6 +114,7 @@ MomentumLedger Simulation::momentum_ledger() const {
 EnergyLedger Simulation::energy_ledger() const {
   const World& w = state_->world;
   EnergyLedger ledger = w.energy_ledger;
+  ledger.contact_work = std::accumulate(w.contact_work.begin(), w.contact_work.end(), 0.0);
   ledger.kinetic = kinetic_energy(w.particles);
   ledger.spring = state_->stepper->spring_energy(w);
   ledger.kinetic_change = ledger.kinetic - w.kinetic_at_start;

@@ -18,6 +18,59 @@ struct RelativeMotion {
 
 using PaperContacts = Contacts<ContactSpring, ContactSpring>;
 
+/// A disc as a surface sees it.
+struct DiscInMotion {
+  Vector2 centre;        // [m]
+  double radius;         // [m]
+  Vector2 displacement;  // [m], of the last step
+  double rotation;       // [rad], of the last step
+  Vector2 velocity;      // [m/s]
+  double spin;           // [rad/s]
+};
+
+/// What a disc has of its contact with a surface.
+struct SurfaceForce {
+  ContactForce force;
+  Vector2 normal = Vector2::Zero();  // from the disc to the surface
+  double arm = 0.0;                  // [m], of the moment
+  double work = 0.0;                 // [J], f_n du_n + f_s du_s
+};
+
+/// Eqs. (2), (12): the moment's arm of a disc [m]; as printed the whole radius.
+inline double moment_arm(TorqueArm reading, double radius, double overlap) {
+  return reading == TorqueArm::radius ? radius : radius - 0.5 * overlap;
+}
+
+/// The law of a pair, a wall or the bar in the place of j. False where they do not touch.
+template <class Law>
+bool surface_force(const Law& law, const World& w, Surface surface, const DiscInMotion& disc, ContactSpring& memory,
+                   SurfaceForce& f) {
+  const NearestPoint nearest = w.surfaces.nearest_point(surface, disc.centre);
+  if (!w.surfaces.touch(surface, nearest, disc.centre, disc.radius, law.readings.bar_corner)) {
+    memory = {};
+    return false;
+  }
+  const double overlap = disc.radius - nearest.distance;
+  f.normal = nearest.normal;
+  f.arm = moment_arm(law.readings.torque_arm, disc.radius, overlap);
+  const RelativeMotion moved(disc.displacement - w.surfaces.displacement(surface), f.arm * disc.rotation, f.normal);
+  RelativeDisplacement u{moved.normal, moved.shear, overlap, moved.normal, moved.shear};
+  if (law.readings.dashpot_velocity == DashpotVelocity::true_velocity) {
+    const RelativeMotion velocity(disc.velocity * w.dt - w.surfaces.displacement(surface), f.arm * disc.spin * w.dt,
+                                  f.normal);
+    u.damped_normal = velocity.normal;
+    u.damped_shear = velocity.shear;
+  }
+  f.force = law.force(u, w.particle_wall, w.dt, memory);
+  f.work = f.force.normal * u.normal + f.force.shear * u.shear;
+  return true;
+}
+
+/// Eqs. (10), (11): the force [N] that a particle receives of a contact whose partner lies in direction `normal`.
+inline Vector2 received(const ContactForce& force, const Vector2& normal) {
+  return {-force.normal * normal.x() + force.shear * normal.y(), -force.normal * normal.y() - force.shear * normal.x()};
+}
+
 template <class Scheme>
 class Step {
  public:
@@ -73,9 +126,8 @@ class Step {
     w_.clear_loads();
   }
 
-  /// Eqs. (2), (12): the moment's arm of a disc [m]; as printed the whole radius.
   [[nodiscard]] double arm(std::uint32_t i, double overlap) const {
-    return scheme_.law.readings.torque_arm == TorqueArm::radius ? p_.radius[i] : p_.radius[i] - 0.5 * overlap;
+    return moment_arm(scheme_.law.readings.torque_arm, p_.radius[i], overlap);
   }
 
   /// False where the two do not touch.
@@ -104,46 +156,31 @@ class Step {
       u.damped_shear = velocity.shear * w_.dt;
     }
     f.force = scheme_.law.force(u, w_.particle_particle, w_.dt, contact.memory);
-    w_.energy_ledger.contact_work += f.force.normal * u.normal + f.force.shear * u.shear;
+    w_.loads[i].work += f.force.normal * u.normal + f.force.shear * u.shear;
     return true;
   }
 
-  /// A wall or the bar takes the place of j.
   void surface_load(PaperContacts::OnSurface& contact) {
     const std::uint32_t i = contact.i;
-    const Vector2& centre = p_.position[i];
-    const NearestPoint nearest = w_.surfaces.nearest_point(contact.surface, centre);
-    if (!w_.surfaces.touch(contact.surface, nearest, centre, p_.radius[i], scheme_.law.readings.bar_corner)) {
-      contact.memory = {};
-      return;
-    }
-    const double overlap = p_.radius[i] - nearest.distance;
-    const double arm_i = arm(i, overlap);
-    const RelativeMotion moved(p_.displacement[i] - w_.surfaces.displacement(contact.surface), arm_i * p_.rotation[i],
-                               nearest.normal);
-    RelativeDisplacement u{moved.normal, moved.shear, overlap, moved.normal, moved.shear};
-    if (scheme_.law.readings.dashpot_velocity == DashpotVelocity::true_velocity) {
-      const RelativeMotion velocity(p_.velocity[i] * w_.dt - w_.surfaces.displacement(contact.surface),
-                                    arm_i * p_.spin[i] * w_.dt, nearest.normal);
-      u.damped_normal = velocity.normal;
-      u.damped_shear = velocity.shear;
-    }
-    const ContactForce force = scheme_.law.force(u, w_.particle_wall, w_.dt, contact.memory);
-    w_.energy_ledger.contact_work += force.normal * u.normal + force.shear * u.shear;
-    w_.totals.add(w_.surfaces, contact.surface, centre, add(i, force, nearest.normal, arm_i));
+    const DiscInMotion disc{p_.position[i], p_.radius[i],   p_.displacement[i],
+                            p_.rotation[i], p_.velocity[i], p_.spin[i]};
+    SurfaceForce f;
+    if (!surface_force(scheme_.law, w_, contact.surface, disc, contact.memory, f)) return;
+    w_.loads[i].work += f.work;
+    w_.totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.arm));
   }
 
   /// Eqs. (10)-(12): the load of one contact on particle i, whose partner lies in direction `normal`. Returns the
   /// force.
   Vector2 add(std::uint32_t i, const ContactForce& force, const Vector2& normal, double arm_i) {
-    Vector2 received(-force.normal * normal.x() + force.shear * normal.y(),
-                     -force.normal * normal.y() - force.shear * normal.x());
-    w_.loads[i].force += received;
+    Vector2 on_i = received(force, normal);
+    w_.loads[i].force += on_i;
     w_.loads[i].moment -= arm_i * force.shear;
-    return received;
+    return on_i;
   }
 
   void end() {
+    for (std::size_t i = 0; i < p_.count(); ++i) w_.contact_work[i] += w_.loads[i].work;
     w_.enter_impulses(scheme_.integrator.kicks_twice() ? 0.5 : 1.0);
     ++w_.steps;
   }

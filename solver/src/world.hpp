@@ -31,6 +31,9 @@ struct World {
 
   std::vector<Load> loads;  // by contacts, at the latest evaluation
   SurfaceTotals totals;     // at the latest evaluation
+  // [J], since the start, the work of the contacts that list a particle first: summed particle by particle, so that the
+  // sum does not depend on how many of them are evaluated at a time.
+  std::vector<double> contact_work;
   MomentumLedger momentum_ledger;
   EnergyLedger energy_ledger;
 
@@ -52,6 +55,9 @@ struct World {
   /// Throws SimulationError, see Simulation::check.
   void check() const;
 };
+
+/// The world of a case before its first step; as for Simulation. Throws SimulationError.
+World make_world(const Case& setup, Particles particles, std::optional<double> bar_tip);
 
 /// Moves a world by its scheme, with the scheme's memory of contacts.
 class Stepper {

@@ -119,15 +119,15 @@ FORMULAS = (
         "spin of the wrong sign at walls",
         LAW,
         STEP,
-        "displacement(contact.surface), arm_i * p_.rotation[i]",
-        "displacement(contact.surface), -arm_i * p_.rotation[i]",
+        "displacement(surface), f.arm * disc.rotation",
+        "displacement(surface), -f.arm * disc.rotation",
     ),
     Fault(
         "torque arm to the contact point",
         LAW,
         STEP,
-        "readings.torque_arm == TorqueArm::radius ?",
-        "readings.torque_arm == TorqueArm::contact_point ?",
+        "return reading == TorqueArm::radius ?",
+        "return reading == TorqueArm::contact_point ?",
     ),
     Fault(
         "no moment on the partner",
@@ -160,8 +160,8 @@ MEMORIES = (
         "history lost at walls",
         MEMORY,
         STEP,
-        "const double overlap = p_.radius[i] - nearest.distance;",
-        "const double overlap = p_.radius[i] - nearest.distance;\n    contact.memory.shear = 0.0;",
+        "const double overlap = disc.radius - nearest.distance;",
+        "const double overlap = disc.radius - nearest.distance;\n  memory.shear = 0.0;",
     ),
     Fault(
         "history lost with the neighbour list",
@@ -243,9 +243,9 @@ RECORDS = (
         "bar force without shear",
         RECORD,
         STEP,
-        "w_.totals.add(w_.surfaces, contact.surface, centre, add(i, force, nearest.normal, arm_i));",
-        "add(i, force, nearest.normal, arm_i);\n"
-        "    w_.totals.add(w_.surfaces, contact.surface, centre, -force.normal * nearest.normal);",
+        "w_.totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.arm));",
+        "add(i, f.force, f.normal, f.arm);\n"
+        "    w_.totals.add(w_.surfaces, contact.surface, disc.centre, -f.force.normal * f.normal);",
     ),
     Fault(
         "bar force without its right face",

@@ -28,6 +28,12 @@ class Fault:
         return re.sub(r"[^a-z0-9]+", "-", signs.lower()).strip("-")
 
 
+# Faults are seeded in the plain steps, so that the copy makes its steps by them: the batches, which users' runs are made
+# by, are held against the plain steps bit for bit (tests/solver/batch_test.cpp).
+BATCHES = "std::make_unique<BatchedPaperStepper>(choice.readings, world)"
+PLAIN = "std::make_unique<PaperStepper<PaperScheme>>(PaperScheme{}, choice.readings, world)"
+
+
 class Workshop:
     """A copy of the solver's sources in `folder`, a build of it, and every program that was built there, now or before."""
 
@@ -43,6 +49,10 @@ class Workshop:
             dirs_exist_ok=True,
         )
         _copy_if_other(ROOT / "CMakeLists.txt", self.sources / "CMakeLists.txt")
+        schemes = self.sources / "solver" / "src" / "scheme.cpp"
+        text = schemes.read_text()
+        assert text.count(BATCHES) == 1, f"scheme.cpp holds {BATCHES!r} not just once"
+        schemes.write_text(text.replace(BATCHES, PLAIN))
         flags = ["-DBUILD_TESTING=OFF", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1"]
         _quietly("cmake", "-S", self.sources, "-B", self.build, *flags)
 

@@ -90,17 +90,8 @@ Particles cloud() {
 }
 
 World world_of(const Case& c, Particles particles, double bar_tip) {
-  World world{.particles = std::move(particles),
-              .surfaces = {.width = c.container.width, .bar = Bar(c.bar.value(), bar_tip)},
-              .particle_particle = c.particle_particle,
-              .particle_wall = c.particle_wall,
-              .gravity = c.gravity,
-              .dt = c.time.step,
-              .loads = {},
-              .totals = {},
-              .momentum_ledger = {},
-              .energy_ledger = {},
-              .kinetic_limit = 1.0};
+  World world = make_world(c, std::move(particles), bar_tip);
+  world.kinetic_limit = 1.0;
   Particles& p = world.particles;
   for (std::size_t i = 0; i < p.count(); ++i) p.displacement[i] = p.velocity[i] * c.time.step;
   return world;

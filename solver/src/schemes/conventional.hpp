@@ -31,7 +31,7 @@ class ConventionalStepper final : public Stepper {
       : scheme_(setup, world), contacts_(MemoryOwner::pair, list_skin(world.particles)) {
     contacts_.rebuild(world.particles, world.surfaces);
     evaluate(world, Scheme::first_evaluation_advances);
-    world.energy_ledger = {};  // no time has passed
+    world.contact_work.assign(world.particles.count(), 0.0);  // no time has passed
   }
 
   void advance(World& world, long steps) override {

@@ -97,7 +97,7 @@ class LiggghtsScheme {
     w.loads[i].moment += -arm_i * f.couple;
     w.loads[j].force += -f.force;
     w.loads[j].moment += -arm_j * f.couple;
-    w.energy_ledger.contact_work -=
+    w.contact_work[i] -=
         w.dt * (f.force.dot(p.velocity[i] - p.velocity[j]) - f.couple * (arm_i * p.spin[i] + arm_j * p.spin[j]));
   }
 
@@ -180,7 +180,7 @@ class LiggghtsScheme {
     w.loads[i].force += f.force;
     w.loads[i].moment += -arm * f.couple;
     w.totals.add(w.surfaces, contact.surface, p.position[i], f.force);
-    w.energy_ledger.contact_work -= w.dt * (f.force.dot(p.velocity[i] - wall_velocity) - f.couple * arm * p.spin[i]);
+    w.contact_work[i] -= w.dt * (f.force.dot(p.velocity[i] - wall_velocity) - f.couple * arm * p.spin[i]);
   }
 
   /// When LIGGGHTS makes its neighbour lists anew, it takes the edges of a mesh that moves from its nodes again; their

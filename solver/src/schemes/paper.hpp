@@ -47,6 +47,8 @@ class PaperStepper final : public Stepper {
       for (long n = 0; n < steps; ++n) step.forces_then_moves();
   }
 
+  [[nodiscard]] PaperContacts& contacts() { return contacts_; }
+
   /// e_n^2 / 2 k_n + e_s^2 / 2 k_s.
   [[nodiscard]] double spring_energy(const World& world) const override {
     double energy = 0.0;

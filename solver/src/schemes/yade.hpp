@@ -61,7 +61,7 @@ class YadeScheme {
     w.loads[i].moment += -cross(arm_i, force);
     w.loads[j].force += force;
     w.loads[j].moment += cross(arm_j, force);
-    w.energy_ledger.contact_work += force.dot(velocity) * w.dt;
+    w.contact_work[i] += force.dot(velocity) * w.dt;
   }
 
   /// The surface is body 1.
@@ -79,7 +79,7 @@ class YadeScheme {
     w.loads[i].force += force;
     w.loads[i].moment += cross(arm, force);
     w.totals.add(w.surfaces, contact.surface, p.position[i], force);
-    w.energy_ledger.contact_work += force.dot(velocity) * w.dt;
+    w.contact_work[i] += force.dot(velocity) * w.dt;
   }
 
  private:

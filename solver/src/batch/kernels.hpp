@@ -1,0 +1,33 @@
+#pragma once
+// The two loops in which a step of the paper's scheme spends its time, for the widest vectors that this machine has.
+// Every operation of a pair and of a particle is that of step.hpp, laws/tanaka.hpp and integrators.hpp, in their order,
+// so that the results are theirs to the last bit.
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "crossdem/case.hpp"
+#include "data.hpp"
+
+namespace crossdem::batch {
+
+/// Eqs. (1)-(12) by the default readings: brings the springs of `pairs` up to date and adds their forces to `loads`,
+/// pair after pair. `discs` and `loads` have an entry for every particle named in `pairs`.
+void add_pair_forces(std::span<Pairs> pairs, const Disc* discs, Load* loads, const ContactParameters& parameters,
+                     double dt);
+
+/// Eqs. (13)-(24): moves the particles under their loads, which are zero afterwards. All arrays are filled up to whole
+/// groups. Returns the largest squared distance [m^2] of a particle from where it was listed.
+double move(std::size_t particles, Group* groups, Disc* discs, Load* loads, double gravity, double dt);
+
+/// The instructions in use, by Highway's names: AVX3 (which is AVX-512), AVX2, SSE4, SSSE3, SCALAR on x86-64.
+std::string_view instruction_set();
+
+/// All that this machine has, the widest first.
+std::vector<std::string_view> instruction_sets();
+
+/// Throws std::invalid_argument for what is none of them. Not while another thread steps.
+void use_instruction_set(std::string_view name);
+
+}  // namespace crossdem::batch

@@ -1,0 +1,104 @@
+// Eight pairs and particles at a time give the bits of the plain steps, on every set of instructions.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "schemes/paper_batches.hpp"
+#include "small_case.hpp"
+
+namespace crossdem::test {
+namespace {
+
+struct Start {
+  const char* name;
+  Case setup;
+  Particles particles;
+  std::optional<double> bar_tip;
+  long steps;
+};
+
+/// Discs apart from one another that fly about: contacts come and go.
+Particles gas(std::size_t count) {
+  std::mt19937_64 random(count);
+  const auto within = [&](double half_width) {
+    return half_width * (2.0 * static_cast<double>(random() >> 11U) * 0x1p-53 - 1.0);
+  };
+  Particles particles;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool small = i % 3 == 0;
+    const Vector2 node(0.005 + 0.006 * static_cast<double>(i % 8), 0.005 + 0.006 * static_cast<double>(i / 8));
+    particles.add(small ? small_radius : large_radius, small ? small_mass : large_mass,
+                  node + Vector2(within(0.0004), within(0.0004)), Vector2(within(0.5), within(0.5)));
+    particles.spin.back() = within(50.0);
+  }
+  return particles;
+}
+
+std::vector<Start> starts() {
+  std::vector<Start> all;
+  for (const std::size_t count : {1, 2, 7, 8, 9, 100})
+    all.push_back({"gas", small_case(), gas(count), std::nullopt, 1000});
+  all.push_back({"weightless gas", weightless(), gas(64), std::nullopt, 1000});
+  const Case fast = small_case({{"bar", {{"speed_m_s", 0.1}}}});
+  const Packing bed = make_packing(fast, 1);
+  all.push_back({"bar", fast, particles_of(bed, fast), bed.bar_tip, 1500});
+  return all;
+}
+
+/// Everything that can be seen of a world, as one list of numbers.
+std::vector<double> state_of(const World& w, const Stepper& stepper) {
+  std::vector<double> all;
+  const Particles& p = w.particles;
+  for (std::size_t i = 0; i < p.count(); ++i)
+    for (const double x :
+         {p.position[i].x(), p.position[i].y(), p.velocity[i].x(), p.velocity[i].y(), p.displacement[i].x(),
+          p.displacement[i].y(), p.angle[i], p.spin[i], p.rotation[i], w.contact_work[i]})
+      all.push_back(x);
+  for (const Vector2& force : w.totals.force) all.insert(all.end(), {force.x(), force.y()});
+  for (const Vector2& v : {w.totals.on_bar.tip, w.totals.on_bar.shaft, w.momentum_ledger.floor, w.momentum_ledger.bar,
+                           w.momentum_ledger.left_wall, w.momentum_ledger.right_wall})
+    all.insert(all.end(), {v.x(), v.y()});
+  all.insert(all.end(), {w.energy_ledger.bar_work, stepper.spring_energy(w), static_cast<double>(w.steps)});
+  return all;
+}
+
+template <class Maker>
+std::vector<double> after(const Start& start, Maker make) {
+  World w = make_world(start.setup, start.particles, start.bar_tip);
+  w.kinetic_limit = std::numeric_limits<double>::infinity();
+  const auto stepper = make(w);
+  stepper->advance(w, start.steps / 4);
+  if (w.surfaces.bar) w.surfaces.bar->start();
+  stepper->advance(w, start.steps - start.steps / 4);
+  return state_of(w, *stepper);
+}
+
+class Batches : public testing::TestWithParam<std::string_view> {
+ protected:
+  void SetUp() override { batch::use_instruction_set(GetParam()); }
+  void TearDown() override { batch::use_instruction_set(batch::instruction_sets().front()); }
+};
+
+TEST_P(Batches, GiveTheBitsOfPlainStepsEqs1To24) {
+  EXPECT_EQ(batch::instruction_set(), GetParam());
+  for (const Start& start : starts()) {
+    const Readings readings;
+    const std::vector<double> plain =
+        after(start, [&](World& w) { return std::make_unique<PaperStepper<PaperScheme>>(PaperScheme{}, readings, w); });
+    const std::vector<double> batched =
+        after(start, [&](World& w) { return std::make_unique<BatchedPaperStepper>(readings, w); });
+    EXPECT_EQ(plain, batched) << start.name << " of " << start.particles.count();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OnThisMachine, Batches, testing::ValuesIn(batch::instruction_sets()),
+                         [](const auto& of) { return std::string(of.param); });
+
+TEST(InstructionSets, RefuseWhatIsNotHere) {
+  EXPECT_THROW(batch::use_instruction_set("AVX-4096"), std::invalid_argument);
+  EXPECT_FALSE(batch::instruction_sets().empty());
+}
+
+}  // namespace
+}  // namespace crossdem::test
