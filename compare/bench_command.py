@@ -13,6 +13,8 @@ from crossdem.adapters.workspace import Workspace
 
 from .bench_report import print_bench, write_bench
 from .bench_runs import run_bench
+from .bench_scaling import run_scaling
+from .bench_scaling_report import print_scaling, write_scaling
 from .bench_tables import machine
 from .bench_workloads import WORKLOADS
 
@@ -31,4 +33,19 @@ def bench_engines(
     bench = run_bench(case, workloads, engines, repeats, workspace, Console())
     write_bench(bench, workspace.root, json_file, about)
     print_bench(bench, workspace.root, about)
+    return ExitCode.ENGINE_FAILED if bench.left_out or bench.failures else ExitCode.AGREES
+
+
+def bench_scaling(
+    case: Case,
+    largest: int,
+    repeats: int,
+    quick: bool,
+    workspace: Workspace,
+    json_file: Path | None,
+) -> ExitCode:
+    about = machine()
+    bench, sizes = run_scaling(case, largest, repeats, quick, workspace, Console())
+    write_scaling(bench, sizes, workspace.root, json_file, about)
+    print_scaling(bench, sizes, workspace.root, about)
     return ExitCode.ENGINE_FAILED if bench.left_out or bench.failures else ExitCode.AGREES

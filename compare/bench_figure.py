@@ -1,4 +1,4 @@
-"""Speed drawn: a bar for each engine on each workload, and the solver's cost over the number of particles."""
+"""Speed drawn: a bar for each engine on each workload."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .colours import engine_styles
 from .wording import number
 
 WIDE_PX = (900, 360)
-ROOM = 1.35  # of the longest bar, for the text behind it
+ROOM = 1.5  # of the longest bar, for the text behind it
 
 
 def draw_bench(bench: Bench, figure: Figure) -> None:
@@ -22,7 +22,7 @@ def draw_bench(bench: Bench, figure: Figure) -> None:
         (solved, "wall_s", "s to solution, each at its own time step"),
     ]
     panels = [panel for panel in panels if panel[0]]
-    widths = [2 if rows is stepped else 1 for rows, _, _ in panels]
+    widths = [3 if rows is stepped else 2 for rows, _, _ in panels]
     for axes, panel in zip(
         figure.subplots(1, max(1, len(panels)), squeeze=False, width_ratios=widths or [1])[0],
         panels,

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from .bench_clocks import CLOCKS
+from .bench_scaling import LARGEST, SMALLEST
 from .bench_workloads import QUICK_WORKLOADS, WORKLOADS
 from .options import taking
 
@@ -82,6 +83,14 @@ workloads = click.option(
     "--workloads",
     callback=names_among(WORKLOADS, "workload"),
     help=f"On what, separated by commas. [default: {','.join(WORKLOADS)}; with --quick {','.join(QUICK_WORKLOADS)}]",
+)
+
+largest = click.option(
+    "--largest",
+    type=click.IntRange(SMALLEST, 10_000_000),
+    default=LARGEST,
+    show_default=True,
+    help="The largest bed, in particles. Settling 1 million takes a good quarter of an hour, once.",
 )
 
 shared = taking(quick, repeats, json_file, case_file, out)

@@ -27,19 +27,22 @@ def write_bench(bench: Bench, folder: Path, json_file: Path | None, about: dict)
         write_whole(folder / "bench.png", png_figure(partial(draw_bench, bench), WIDE_PX))
 
 
-def print_bench(bench: Bench, folder: Path, about: dict, console: Console | None = None) -> None:
-    console = console or Console()
+def print_bench(bench: Bench, folder: Path, about: dict) -> None:
+    console = Console()
     console.print(text_table(tables.TITLES, tables.rows(bench)))
-    lines = [
-        *tables.workload_lines(bench),
-        tables.machine_line(about),
-        *(f"{name}: {said}" for name, said in bench.versions.items()),
-    ]
-    for line in lines:
+    for line in tables.workload_lines(bench):
+        console.print(line, highlight=False, soft_wrap=True)
+    print_notes(bench, about, console)
+    console.print(f"Files: {folder / 'bench.json'}, bench.png", soft_wrap=True)
+
+
+def print_notes(bench: Bench, about: dict, console: Console) -> None:
+    """On what machine, by which versions, and what is to be said of it."""
+    versions = [f"{name}: {version}" for name, version in bench.versions.items()]
+    for line in (tables.machine_line(about), *versions):
         console.print(Text(printable(line)), soft_wrap=True)
     for remark in tables.remarks(bench):
         console.print(Text(printable(remark), style="magenta"), soft_wrap=True)
-    console.print(Text(f"Files: {folder / 'bench.json'}, bench.png"), soft_wrap=True)
 
 
 def text_table(titles: tuple[str, ...], rows: list[tuple[str, ...]]) -> Table:

@@ -72,7 +72,7 @@ def bed(case: Case, workspace: Workspace, display: ProgressDisplay) -> Packing:
     count, recipe = case.resolved["particles"]["count"], case.resolved["packing"]
     steps = SETTLING * recipe["settling_s"] / recipe["step_s"]
     guess_s = get_engine(REFERENCE).cost_s * count * steps
-    display.say(f"settling a bed of {count:,} particles: about {guess_s:.0f} s")
+    display.say(f"settling a bed ({count:,} particles): about {guess_s:.0f} s")
     started = time.monotonic()
     packing = make_packing(case, SEED, folder)
     made = {"wall_s": time.monotonic() - started, "solver": get_engine(REFERENCE).version()}
@@ -91,7 +91,9 @@ def _present(engines: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
     versions, left_out = {}, {}
     for name in engines:
         try:
-            versions[name] = get_engine(name).version()
+            engine = get_engine(name)
+            compiler = engine.compiler()
+            versions[name] = engine.version() + (f" ({compiler})" if compiler else "")
         except EngineNotFound as error:
             left_out[name] = str(error)
     return versions, left_out

@@ -87,11 +87,11 @@ def _row(row: Row) -> tuple[str, ...]:
         row.workload,
         row.engine,
         number(row.wall_s.median),
-        _spread(row.ns_per_particle_step),
-        _spread(row.ratio) if row.ratio else DASH,
+        spread(row.ns_per_particle_step),
+        spread(row.ratio) if row.ratio else DASH,
     )
 
 
-def _spread(spread: Spread) -> str:
+def spread(found: Spread) -> str:
     """ "40.4 (40.3 to 40.6)"."""
-    return f"{number(spread.median)} ({number(spread.low)} to {number(spread.high)})"
+    return f"{number(found.median)} ({number(found.low)} to {number(found.high)})"

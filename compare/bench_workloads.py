@@ -9,9 +9,9 @@ from crossdem.adapters.case import Case, varied_table
 from crossdem.adapters.engines import DEFAULT_ENGINES
 
 PENETRATION_STEPS = 90_000  # of `bar`: as many as the paper's own penetration has
-PARTICLE_STEPS = (
-    30_000_000  # of a static bed: a second or two at 50 ns, a quarter of a minute at 500
-)
+# Of a static bed: a second or two at 50 ns, a quarter of a minute at 500; and however large or small it is.
+PARTICLE_STEPS = 30_000_000
+FEWEST_STEPS, MOST_STEPS = 100, 30_000
 QUICK = 100  # times fewer steps
 
 
@@ -46,7 +46,8 @@ def static(particles: int) -> Callable[[Case, bool], Workload]:
     def workload(case: Case, quick: bool) -> Workload:
         bed = _wide_bed(case, particles)
         step_s = min(case.step_s(engine) for engine in DEFAULT_ENGINES)
-        steps = max(100, PARTICLE_STEPS // particles // (QUICK if quick else 1))
+        steps = min(PARTICLE_STEPS // particles, MOST_STEPS) // (QUICK if quick else 1)
+        steps = max(FEWEST_STEPS, steps)
         return Workload(static_name(particles), _at_step(bed, step_s, 0.0, steps), bed)
 
     return workload

@@ -216,6 +216,14 @@ def bench(context, **arguments):
         raise click.UsageError(f"options of {context.invoked_subcommand} stand behind its name")
 
 
+@bench.command("scaling")
+@bench_options.largest
+@bench_options.shared
+def bench_scaling(**arguments):
+    """Time the native solver on static beds of 1000 particles and more: speed, memory, and how long a bed settles."""
+    return commands.bench_scaling(**arguments)
+
+
 @cli.command()
 def doctor():
     """Say which engines are here, and what to install."""

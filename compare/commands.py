@@ -182,6 +182,15 @@ def bench(engines, workloads, quick, repeats, json_file, case_file, out) -> Exit
         return bench_engines(case, names, engines, repeats, quick, workspace, json_file)
 
 
+def bench_scaling(largest, quick, repeats, json_file, case_file, out) -> ExitCode:
+    from .bench_command import bench_scaling as scale  # here: as in _report
+
+    case = _load(case_file, [])
+    _needs_bar(case)
+    with _workspace(case, [], out) as workspace:
+        return scale(case, largest, repeats, quick, workspace, json_file)
+
+
 def _needs_bar(case: Case) -> None:
     """Raises CaseError for what no comparison of beds can be made of."""
     if case.resolved["particle"]:
