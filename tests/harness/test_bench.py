@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 from command_line import REFERENCE, ROOT, crossdem
 from rich.console import Console
+from small_case import small_file
 from test_cli import _without_engines
 
 from crossdem.adapters.case import load_case
@@ -18,27 +19,10 @@ from crossdem.compare.bench_scaling import sizes_up_to
 from crossdem.compare.bench_workloads import Workload, bar, static, static_name, time_to_solution
 from crossdem.compare.wording import DASH
 
-TINY = (
-    ("count = 944", "count = 60"),
-    ("rest_s = 1.2 ", "rest_s = 0.1 "),
-    ("penetration_s = 9.0", "penetration_s = 0.2"),
-)
-
 
 @pytest.fixture(scope="module")
 def paper():
     return load_case(REFERENCE)
-
-
-def tiny(folder, *changes):
-    """The file of a case that takes no time."""
-    text = REFERENCE.read_text(encoding="utf-8")
-    for old, new in (*TINY, *changes):
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    path = folder / "tiny.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
 
 
 def timing(engine, number, wall_s, workload="bar", **others):
@@ -188,11 +172,18 @@ def test_the_sizes_are_powers_of_ten_and_the_largest():
 
 def test_a_quick_run_of_the_native_solver_alone(tmp_path):
     options = ["--quick", "--engines", "native", "--workloads", "bar,time-to-solution"]
-    command = ["bench", *options, "--case", tiny(tmp_path), "--json", tmp_path / "numbers.json"]
+    command = [
+        "bench",
+        *options,
+        "--case",
+        small_file(tmp_path),
+        "--json",
+        tmp_path / "numbers.json",
+    ]
     ended = crossdem(*command, cwd=tmp_path)
     assert ended.returncode == 0, ended.stderr
     assert "settling" in ended.stdout and "timing: done" in ended.stdout
-    assert "time-to-solution: 60 particles, 3,000 steps of 100 µs" in ended.stdout
+    assert "time-to-solution: 40 particles, 2,000 steps of 100 µs" in ended.stdout
     out = tmp_path / "results" / "bench"
     assert {path.name for path in out.iterdir()} == {
         *("beds", "bench.json", "bench.png", "crossdem.json")
@@ -203,14 +194,14 @@ def test_a_quick_run_of_the_native_solver_alone(tmp_path):
         *((0, "bar"), (0, "time-to-solution"), (1, "bar"), (1, "time-to-solution"))
     ]
     assert all(0 < t["wall_s"] < t["process_wall_s"] for t in found["timings"])
-    assert {t["steps"] for t in found["timings"]} == {20 + 40, 3000}
+    assert {t["steps"] for t in found["timings"]} == {20 + 20, 2000}
     assert found["machine"]["cores"] >= 1 and "-O" in found["engines"]["native"]
     again = crossdem(*command, cwd=tmp_path)
     assert again.returncode == 0 and "settling" not in again.stdout
 
 
 def test_a_quick_run_over_the_number_of_particles(tmp_path):
-    command = ["bench", "scaling", "--quick", "--largest", "1000", "--case", tiny(tmp_path)]
+    command = ["bench", "scaling", "--quick", "--largest", "1000", "--case", small_file(tmp_path)]
     ended = crossdem(*command, cwd=tmp_path)
     assert ended.returncode == 0, ended.stderr
     found = json.loads((tmp_path / "results" / "bench" / "scaling.json").read_text())
@@ -223,7 +214,12 @@ def test_a_quick_run_over_the_number_of_particles(tmp_path):
 def test_a_missing_engine_is_named_and_left_out(tmp_path):
     options = ["--quick", "--engines", "native,liggghts", "--workloads", "bar"]
     ended = crossdem(
-        "bench", *options, "--case", tiny(tmp_path), cwd=tmp_path, PATH=_without_engines(tmp_path)
+        "bench",
+        *options,
+        "--case",
+        small_file(tmp_path),
+        cwd=tmp_path,
+        PATH=_without_engines(tmp_path),
     )
     assert ended.returncode == 3, ended.stderr
     assert "liggghts is left out: liggghts is not installed" in ended.stdout
@@ -235,12 +231,12 @@ def test_a_missing_engine_is_named_and_left_out(tmp_path):
 def test_an_engine_that_tells_no_time_is_named_and_not_counted(fake, tmp_path):
     """The fake LIGGGHTS ends well, and says nothing of its loop time."""
     options = ["--quick", "--engines", "native,liggghts", "--workloads", "bar"]
-    ended = crossdem("bench", *options, "--case", tiny(tmp_path), cwd=tmp_path)
+    ended = crossdem("bench", *options, "--case", small_file(tmp_path), cwd=tmp_path)
     assert ended.returncode == 3, ended.stderr
     assert "bar: liggghts did not say how long its steps took" in ended.stdout
     assert len(fake.process_ids()) == 1
     fake.fault("crash while resting")
-    ended = crossdem("bench", *options, "--case", tiny(tmp_path), cwd=tmp_path)
+    ended = crossdem("bench", *options, "--case", small_file(tmp_path), cwd=tmp_path)
     assert ended.returncode == 3 and "bar: liggghts was ended by signal 6" in ended.stdout
     assert not list((tmp_path / "results" / "bench").glob(f"{bench_runs.RUN}*"))
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "crossdem/run.hpp"
 #include "small_case.hpp"
 
 namespace crossdem::test {
@@ -38,11 +39,24 @@ TEST(Measure, RefusesMoreStepsThanTheCaseHas) {
   EXPECT_THROW(measure(setup, make_packing(setup, 1), 501), CaseError);
 }
 
-TEST(Measure, StopsWhereTheMotionIsBeyondReason) {
+/// A bar so fast that it runs over particles soon after it starts: both must say so of the same particle and step.
+TEST(Measure, StepsAsARunDoes) {
   Case setup = short_case();
   const Packing packing = make_packing(setup, 1);
-  setup.time.step = 3e-3;
-  EXPECT_THROW(measure(setup, packing, {}), SimulationError);
+  ASSERT_TRUE(setup.bar);
+  setup.bar->speed = 30.0;
+  const auto said = [](const auto& steps) -> std::string {
+    try {
+      steps();
+    } catch (const SimulationError& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  const TemporaryFolder folder;
+  const std::string of_run = said([&] { run(setup, packing, folder.path()); });
+  EXPECT_NE(of_run.find("into the bar after 2"), std::string::npos) << of_run;  // 200 steps of rest, then some
+  EXPECT_EQ(said([&] { measure(setup, packing, {}); }), of_run);
 }
 
 }  // namespace
