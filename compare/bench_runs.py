@@ -2,36 +2,27 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rich.console import Console
 
 from crossdem.adapters.case import Case
-from crossdem.adapters.engine import Engine, EngineFailure, EngineNotFound
+from crossdem.adapters.engine import EngineFailure, EngineNotFound
 from crossdem.adapters.engines import get_engine
-from crossdem.adapters.files import write_whole
-from crossdem.adapters.gates import REFERENCE
-from crossdem.adapters.one_run import LOG, Limits
-from crossdem.adapters.packing import Packing, make_packing
-from crossdem.adapters.process import Process
-from crossdem.adapters.run_folder import environment, prepare
+from crossdem.adapters.packing import Packing
 from crossdem.adapters.workspace import Workspace
 
 from .bench import Bench, Timing
-from .bench_clocks import timed_command, told
+from .bench_beds import bed
+from .bench_timing import time_run
 from .bench_workloads import Workload
 from .progress import ProgressDisplay
 
-SEED = 1
-POLL_S = 0.05
-TELL_S = 0.5
 RUN = ".run-"  # how the folder that an engine works in starts
-SETTLING = 1.5  # times the shortest settling, for the guess how long a bed takes
 
 Key = tuple[str, str]  # workload, engine
 
@@ -59,31 +50,6 @@ def run_bench(
         tuple(t for t in rounds.timings if (t.workload, t.engine) not in rounds.failures),
         rounds.failures,
     )
-
-
-def bed(case: Case, workspace: Workspace, display: ProgressDisplay) -> Packing:
-    """The packing of `case`, made once and kept.
-
-    Not made anew by another solver, as elsewhere: versions of it are to be compared on the same bed.
-    """
-    folder = bed_folder(case, workspace)
-    if folder.exists():
-        return make_packing(case, SEED, folder)
-    count, recipe = case.resolved["particles"]["count"], case.resolved["packing"]
-    steps = SETTLING * recipe["settling_s"] / recipe["step_s"]
-    guess_s = get_engine(REFERENCE).cost_s * count * steps
-    display.say(f"settling a bed ({count:,} particles): about {guess_s:.0f} s")
-    started = time.monotonic()
-    packing = make_packing(case, SEED, folder)
-    made = {"wall_s": time.monotonic() - started, "solver": get_engine(REFERENCE).version()}
-    write_whole(folder.with_suffix(".json"), json.dumps(made).encode())
-    return packing
-
-
-def bed_folder(case: Case, workspace: Workspace) -> Path:
-    """Of the packing of `case`; NAME.json beside it says how long it took to make."""
-    count = case.resolved["particles"]["count"]
-    return workspace.root / "beds" / f"{count}-{case.run_hash[:12]}"
 
 
 def _present(engines: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
@@ -138,7 +104,7 @@ class _Rounds:
             try:
                 with TemporaryDirectory(prefix=RUN, dir=self._root) as folder:
                     run_dir = Path(folder) / "run"
-                    timing = _time(
+                    timing = time_run(
                         number,
                         workload,
                         engine,
@@ -160,48 +126,3 @@ class _Rounds:
         left_s = max(0.0, self._expected_s[key] - process_s) + later_s
         done_s = time.monotonic() - self._started
         self._display.update("timing", min(0.99, done_s / (done_s + left_s)), left_s)
-
-
-def _time(
-    number: int,
-    workload: Workload,
-    engine: Engine,
-    packing: Packing,
-    run_dir: Path,
-    tell: Callable[[float], None],
-) -> Timing:
-    """One run in the new folder `run_dir`. Raises EngineFailure, EngineNotFound, OSError."""
-    case = workload.case
-    if reasons := engine.unsupported(case):
-        raise EngineFailure(f"cannot run this case: {'; '.join(reasons)}")
-    prepare(case, packing, engine, run_dir)
-    command = timed_command(engine, case, run_dir)
-    allowed_s = Limits().allowed_s(engine.expected_s(case))
-    process = Process(command, run_dir, environment(engine), run_dir / LOG)
-    told_s = 0.0
-    try:
-        while (ending := process.poll()) is None:
-            if process.wall_s > allowed_s:
-                raise EngineFailure(f"ran past its time limit of {allowed_s:.3g} s and was ended")
-            if process.wall_s - told_s >= TELL_S:
-                told_s = process.wall_s
-                tell(told_s)
-            time.sleep(POLL_S)
-    finally:
-        process.kill()
-    log = (run_dir / LOG).read_text(encoding="utf-8", errors="replace")
-    if ending.status != 0:
-        complaint = engine.complaint(log)
-        raise EngineFailure(f"{ending}" + (f": {complaint}" if complaint else ""))
-    said = told(engine, case, log)
-    return Timing(
-        workload=workload.name,
-        engine=engine.name,
-        round=number,
-        particles=len(packing.particles),
-        steps=said.steps,
-        wall_s=said.wall_s,
-        process_wall_s=ending.wall_s,
-        process_cpu_s=ending.cpu_s,
-        peak_memory_bytes=said.peak_memory_bytes,
-    )

@@ -13,7 +13,8 @@ from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.workspace import Workspace
 
 from .bench import Bench, Spread
-from .bench_runs import bed_folder, run_bench
+from .bench_beds import bed_folder
+from .bench_runs import run_bench
 from .bench_workloads import Workload, static
 
 SMALLEST, LARGEST = 1000, 1_000_000

@@ -135,7 +135,7 @@ def test_engines_take_turns_and_one_that_fails_is_not_counted(paper, tmp_path, m
             raise EngineFailure("was ended by signal 9 (SIGKILL)")
         return timing(engine.name, number, 1.0, workload.name)
 
-    monkeypatch.setattr(bench_runs, "_time", fake)
+    monkeypatch.setattr(bench_runs, "time_run", fake)
     monkeypatch.setattr(bench_runs, "bed", lambda *_: None)
     monkeypatch.setattr(bench_runs, "_present", lambda engines: (dict.fromkeys(engines, "1"), {}))
     workloads = [Workload(name, paper, paper) for name in ("one", "two")]
@@ -186,7 +186,7 @@ def test_a_quick_run_of_the_native_solver_alone(tmp_path):
     assert "time-to-solution: 40 particles, 2,000 steps of 100 µs" in ended.stdout
     out = tmp_path / "results" / "bench"
     assert {path.name for path in out.iterdir()} == {
-        *("beds", "bench.json", "bench.png", "crossdem.json")
+        *("packings", "bench.json", "bench.png", "crossdem.json")
     }
     found = json.loads((out / "bench.json").read_text())
     assert found == json.loads((tmp_path / "numbers.json").read_text())
