@@ -112,7 +112,7 @@ class _Rounds:
                         run_dir,
                         lambda process_s: self._tell(key, process_s),
                     )
-            except (EngineFailure, EngineNotFound, OSError) as failure:
+            except (EngineFailure, EngineNotFound) as failure:
                 self.failures[key] = f"{engine.name} {failure}"
             else:
                 self.timings.append(timing)

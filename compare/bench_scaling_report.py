@@ -66,5 +66,5 @@ def _draw(sizes: list[Size], figure: Figure) -> None:
     memory.set_ylabel("bytes per particle")
     for axes in (speed, memory):
         axes.set_xscale("log")
-        axes.set_ylim(bottom=0)
+        axes.set_ylim(0, 1.1 * axes.get_ylim()[1])
         axes.set_xlabel("particles")

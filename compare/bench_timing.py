@@ -28,7 +28,7 @@ def time_run(
     run_dir: Path,
     tell: Callable[[float], None],
 ) -> Timing:
-    """One run in the new folder `run_dir`. Raises EngineFailure, EngineNotFound, OSError."""
+    """One run in the new folder `run_dir`. Raises EngineFailure, EngineNotFound."""
     case = workload.case
     if reasons := engine.unsupported(case):
         raise EngineFailure(f"cannot run this case: {'; '.join(reasons)}")
