@@ -103,9 +103,14 @@ def varied(case: Case, overrides: Sequence[str]) -> Case:
     return _resolve(values, case.file_name)
 
 
-def varied_table(case: Case, **tables: dict) -> Case:
-    """`case` with whole tables of other values, what they leave out at its default. Raises CaseError, SolverError."""
-    return _resolve(copy.deepcopy(case.resolved) | tables, case.file_name)
+def varied_table(case: Case, **tables: dict | None) -> Case:
+    """`case` with whole tables of other values, what they leave out at its default; None takes a table away.
+
+    Raises CaseError, SolverError.
+    """
+    values = copy.deepcopy(case.resolved) | tables
+    kept = {key: value for key, value in values.items() if value is not None}
+    return _resolve(kept, case.file_name)
 
 
 def _apply(tables: dict, overrides: Sequence[str]) -> list[str]:

@@ -1,4 +1,4 @@
-"""What of a machine can change the last bits of a run."""
+"""What of a machine can change the last bits of a run, and what it is called."""
 
 from __future__ import annotations
 
@@ -20,9 +20,17 @@ def machine_facts() -> dict:
 
 def _flags() -> set[str]:
     """Of the first processor; none where the system does not tell."""
+    return set(_first_processor("flags").split())
+
+
+def processor() -> str:
+    """Model of the first processor, as it calls itself; empty where the system does not tell."""
+    return _first_processor("model name").strip()
+
+
+def _first_processor(key: str) -> str:
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
-        return set()
-    flags = (line.split(":", 1)[1] for line in lines if line.startswith("flags"))
-    return set(next(flags, "").split())
+        return ""
+    return next((line.split(":", 1)[1] for line in lines if line.startswith(key)), "")

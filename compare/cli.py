@@ -6,6 +6,7 @@ import traceback
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 from crossdem import ExitCode, __version__
 from crossdem.adapters.case import CaseError
@@ -15,7 +16,7 @@ from crossdem.adapters.solver import SolverError
 from crossdem.adapters.workflow.snakemake import WorkflowError
 from crossdem.adapters.workspace import WorkspaceError
 
-from . import commands, options
+from . import bench_options, commands, options
 from .ingredients import TARGETS
 from .doctor import doctor as examine
 
@@ -198,6 +199,29 @@ def calibrate(**arguments):
     Ends with 0 when its error rates are as low as they are to be, 1 when not, 4 when there are too few recorded runs.
     """
     return commands.calibrate(**arguments)
+
+
+@cli.group(invoke_without_command=True)
+@options.taking(bench_options.engines, bench_options.workloads)
+@bench_options.shared
+@click.pass_context
+def bench(context, **arguments):
+    """Time the engines on the same beds: ns per particle-step, time to solution, each against the native solver.
+
+    Nothing but the stepping is timed, by each engine itself, on one core. Ends with 3 when an engine is missing or failed.
+    """
+    if not context.invoked_subcommand:
+        return commands.bench(**arguments)
+    if any(context.get_parameter_source(name) is not ParameterSource.DEFAULT for name in arguments):
+        raise click.UsageError(f"options of {context.invoked_subcommand} stand behind its name")
+
+
+@bench.command("scaling")
+@bench_options.largest
+@bench_options.shared
+def bench_scaling(**arguments):
+    """Time the native solver on static beds of 1000 particles and more: speed, memory, and how long a bed settles."""
+    return commands.bench_scaling(**arguments)
 
 
 @cli.command()

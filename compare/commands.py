@@ -13,6 +13,7 @@ from crossdem.adapters.dataset import Dataset, DatasetError
 from crossdem.adapters.engines import unknown_engines
 from crossdem.adapters.workspace import Workspace
 
+from .bench_workloads import QUICK_WORKLOADS, WORKLOADS
 from .comparison import ComparisonError, case_faults, compare_runs
 from .ensemble import Ensemble
 from .explain import explain_case
@@ -169,6 +170,25 @@ def calibrate(case_file, overrides, splits, record, out, jobs) -> ExitCode:
     recorded = find_record(case, record)
     with _workspace(case, overrides, out) as workspace:
         return calibrate_case(case, recorded, splits, workspace.root / "calibrate", jobs)
+
+
+def bench(engines, workloads, quick, repeats, json_file, case_file, out) -> ExitCode:
+    from .bench_command import bench_engines  # here: as in _report
+
+    names = workloads or (QUICK_WORKLOADS if quick else WORKLOADS)
+    case = _load(case_file, [])
+    _needs_bar(case)
+    with _workspace(case, [], out) as workspace:
+        return bench_engines(case, names, engines, repeats, quick, workspace, json_file)
+
+
+def bench_scaling(largest, quick, repeats, json_file, case_file, out) -> ExitCode:
+    from .bench_command import bench_scaling as scale  # here: as in _report
+
+    case = _load(case_file, [])
+    _needs_bar(case)
+    with _workspace(case, [], out) as workspace:
+        return scale(case, largest, repeats, quick, workspace, json_file)
 
 
 def _needs_bar(case: Case) -> None:

@@ -1,5 +1,6 @@
 #include "crossdem/case.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include "case_reader.hpp"
@@ -49,6 +50,8 @@ class DuplicateKeys {
 
 CaseError::CaseError(std::vector<std::string> faults)
     : std::runtime_error(joined(faults)), faults_(std::move(faults)) {}
+
+long TimeControl::steps_in(double interval) const { return std::lround(interval / step); }
 
 double Case::disc_mass(double radius) const {
   return particles.density * std::numbers::pi * radius * radius * container.thickness;

@@ -1,11 +1,14 @@
-// crossdem-solver: resolve a case, make a packing, run.
+// crossdem-solver: resolve a case, make a packing, run, measure how fast a run is.
 // Exit 0 done, 1 something went wrong (such as a full disk), 2 bad input, 3 the motion is beyond reason: it is not
 // finite, left the box, exploded or does not settle.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
 
+#include "crossdem/measure.hpp"
 #include "crossdem/run.hpp"
 #include "crossdem/simulation.hpp"
 #include "crossdem/version.hpp"
@@ -46,6 +49,7 @@ struct Arguments {
   std::string packing_file;
   std::string output;
   std::uint64_t seed = 1;
+  std::optional<long> steps;
 };
 
 void resolve(const Arguments& given) {
@@ -64,6 +68,19 @@ void run(const Arguments& given) {
   const crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
   claim_folder(given.output);
   crossdem::run(setup, packing, given.output);
+}
+
+void measure(const Arguments& given) {
+  const crossdem::Case setup = load(given.case_file, given.shown_name);
+  const crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
+  const crossdem::Measurement found = crossdem::measure(setup, packing, given.steps);
+  const nlohmann::json line = {{"steps", found.steps},
+                               {"particles", found.particles},
+                               {"wall_s", found.wall},
+                               {"cpu_s", found.cpu},
+                               {"peak_memory_bytes", found.peak_memory}};
+  std::cout << line.dump() << std::endl;
+  if (!std::cout) throw crossdem::FileError("standard output", "cannot be written");
 }
 
 int command_line(int argc, char** argv) {
@@ -87,6 +104,10 @@ int command_line(int argc, char** argv) {
   CLI::App* runner = add_command("run", "write motion.h5, resistance.csv, ledger.csv and, at the end, run.json", run);
   runner->add_option("--packing", given.packing_file, "packing.csv, with packing.json beside it")->required();
   runner->add_option("--output", given.output, "folder to write into")->required();
+  CLI::App* measurer = add_command("measure", "print as JSON how long the steps of a run take; write nothing", measure);
+  measurer->add_option("--packing", given.packing_file, "packing.csv, with packing.json beside it")->required();
+  measurer->add_option("--steps", given.steps, "only so many, from the first on")
+      ->check(CLI::Range(0L, std::numeric_limits<long>::max()));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

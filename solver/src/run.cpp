@@ -1,6 +1,5 @@
 #include "crossdem/run.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -8,17 +7,11 @@
 #include "recorder.hpp"
 
 namespace crossdem {
-namespace {
-
-long steps_of(double interval, double step) { return std::lround(interval / step); }
-
-}  // namespace
 
 void run(const Case& setup, const Packing& packing, const std::filesystem::path& folder) {
-  const double dt = setup.time.step;
-  const long total = steps_of(setup.time.penetration, dt);
-  const long per_sample = steps_of(setup.time.sample_interval, dt);
-  const long per_frame = steps_of(setup.time.frame_interval, dt);
+  const long total = setup.time.steps_in(setup.time.penetration);
+  const long per_sample = setup.time.steps_in(setup.time.sample_interval);
+  const long per_frame = setup.time.steps_in(setup.time.frame_interval);
   const long between_outputs = std::gcd(per_sample, per_frame);
 
   Simulation simulation(setup, particles_of(packing, setup), packing.bar_tip);
@@ -26,7 +19,7 @@ void run(const Case& setup, const Packing& packing, const std::filesystem::path&
   ResistanceFile resistance(folder / "resistance.csv");
   LedgerFile ledger(folder / "ledger.csv");
 
-  for (long left = steps_of(setup.time.rest, dt); left > 0; left -= per_sample) {
+  for (long left = setup.time.steps_in(setup.time.rest); left > 0; left -= per_sample) {
     simulation.advance(std::min(left, per_sample));
     simulation.check();
   }

@@ -48,7 +48,18 @@ def test_version():
 
 @pytest.mark.parametrize(
     "command",
-    ["check", "run", "generate", "resolve", "compare", "explain", "horizon", "stability", "doctor"],
+    [
+        "check",
+        "run",
+        "generate",
+        "resolve",
+        "compare",
+        "explain",
+        "horizon",
+        "stability",
+        "bench",
+        "doctor",
+    ],
 )
 def test_every_command_explains_itself(command):
     ended = crossdem(command, "--help")

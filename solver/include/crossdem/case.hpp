@@ -60,6 +60,8 @@ struct TimeControl {
   double sample_interval = 0.0;  // [s] between rows of resistance
   double frame_interval = 0.0;   // [s] between frames of motion
   bool allow_above_eq32 = false;
+
+  [[nodiscard]] long steps_in(double interval) const;  // of an interval [s] that is a whole number of them
 };
 
 struct EngineSettings {

@@ -1,0 +1,96 @@
+"""Options of `crossdem bench`."""
+
+from pathlib import Path
+
+import click
+
+from .bench_clocks import CLOCKS
+from .bench_scaling import LARGEST, SMALLEST
+from .bench_workloads import QUICK_WORKLOADS, WORKLOADS
+from .options import taking
+
+PAPER = Path(__file__).resolve().parent.parent / "reference_cases" / "bar_penetration.toml"
+
+
+def names_among(known, what: str):
+    """A callback that takes names separated by commas, each of which must be known."""
+
+    def names(context, parameter, text: str | None) -> list[str] | None:
+        if text is None:
+            return None
+        found = list(dict.fromkeys(name.strip() for name in text.split(",")))
+        for name in found:
+            if name not in known:
+                raise click.BadParameter(f"no {what} {name!r}; there are {', '.join(known)}")
+        return found
+
+    return names
+
+
+def _json_file(context, parameter, path: Path | None) -> Path | None:
+    if path and (path.is_dir() or not path.absolute().parent.is_dir()):
+        raise click.BadParameter(f"{path} is a folder, or lies in one that is not there")
+    return path
+
+
+def _repeats(context, parameter, count: int | None) -> int:
+    return count or (2 if context.params.get("quick") else 5)
+
+
+quick = click.option(
+    "--quick",
+    is_flag=True,
+    is_eager=True,
+    help="A hundredth of the steps, 2 rounds: whether it works, not how fast it is.",
+)
+repeats = click.option(
+    "--repeats",
+    type=click.IntRange(1, 1000),
+    callback=_repeats,
+    help="How many rounds; every engine runs every workload once in each. [default: 5]",
+)
+json_file = click.option(
+    "--json",
+    "json_file",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    callback=_json_file,
+    help="Also write the numbers there.",
+)
+case_file = click.option(
+    "--case",
+    "case_file",
+    metavar="CASE",
+    type=click.Path(path_type=Path),
+    default=PAPER,
+    help="A case with a bed and a bar, of which the workloads are made. [default: the paper's]",
+)
+out = click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("results") / "bench",
+    show_default=True,
+    help="Output folder; beds that lie there are not made again.",
+)
+engines = click.option(
+    "--engines",
+    default=",".join(CLOCKS),
+    show_default=True,
+    callback=names_among(CLOCKS, "engine that can be timed"),
+    help="Which engines to time, separated by commas.",
+)
+workloads = click.option(
+    "--workloads",
+    callback=names_among(WORKLOADS, "workload"),
+    help=f"On what, separated by commas. [default: {','.join(WORKLOADS)}; with --quick {','.join(QUICK_WORKLOADS)}]",
+)
+
+largest = click.option(
+    "--largest",
+    type=click.IntRange(SMALLEST, 10_000_000),
+    default=LARGEST,
+    show_default=True,
+    help="The largest bed, in particles. Settling 1 million takes a good quarter of an hour, once.",
+)
+
+shared = taking(quick, repeats, json_file, case_file, out)

@@ -1,0 +1,264 @@
+"""Speed: what is timed is what is said, ratios are taken round by round, and what did not run is never counted."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+from command_line import REFERENCE, ROOT, crossdem
+from rich.console import Console
+from small_case import small_file
+from test_cli import _without_engines
+
+from crossdem.adapters.case import load_case
+from crossdem.adapters.engine import EngineFailure
+from crossdem.adapters.engines import DEFAULT_ENGINES, get_engine
+from crossdem.compare import bench_report, bench_runs, bench_scaling, bench_tables
+from crossdem.compare.bench import Bench, Spread, Timing
+from crossdem.compare.bench_clocks import told
+from crossdem.compare.bench_scaling import sizes_up_to
+from crossdem.compare.bench_workloads import Workload, bar, static, static_name, time_to_solution
+from crossdem.compare.wording import DASH
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return load_case(REFERENCE)
+
+
+def timing(engine, number, wall_s, workload="bar", **others):
+    about = dict(
+        particles=1000, steps=2000, process_wall_s=5.0, process_cpu_s=4.9, peak_memory_bytes=None
+    )
+    return Timing(workload, engine, number, wall_s=wall_s, **about | others)
+
+
+def bench(case, timings, failures=None, left_out=None):
+    engines = dict.fromkeys(t.engine for t in timings)
+    workloads = tuple(
+        Workload(name, case, case) for name in dict.fromkeys(t.workload for t in timings)
+    )
+    return Bench(
+        case,
+        workloads,
+        3,
+        dict.fromkeys(engines, "1.0"),
+        left_out or {},
+        tuple(timings),
+        failures or {},
+    )
+
+
+def test_ratios_are_those_of_a_round_and_not_of_medians(paper):
+    """The machine is half as fast in the second round, and LIGGGHTS twice as slow as native in each."""
+    native, liggghts = [1.0, 2.0, 1.1], [2.0, 4.0, 2.2]
+    found = bench(
+        paper,
+        [timing("native", k, s) for k, s in enumerate(native)]
+        + [timing("liggghts", k, s) for k, s in enumerate(liggghts[:2])],
+    )
+    first, second = found.rows()
+    assert first.wall_s == Spread(median=1.1, low=pytest.approx(1.05), high=pytest.approx(1.55))
+    assert first.ns_per_particle_step.median == pytest.approx(1.1e9 / 2e6)
+    assert (first.ratio.median, second.ratio.low, second.ratio.median) == (1.0, 2.0, 2.0)
+    assert second.wall_s.median / first.wall_s.median != pytest.approx(2.0, rel=0.1)
+
+
+def test_without_the_native_solver_there_are_times_and_no_ratios(paper, tmp_path):
+    found = bench(paper, [timing("yade", 0, 3.0)], left_out={"native": "not built"})
+    [row] = bench_tables.rows(found)
+    assert row[-1] == DASH and row[2] == "3.00"
+    assert "native is left out: not built" in bench_tables.remarks(found)
+    bench_report.write_bench(found, tmp_path, None, bench_tables.machine())
+    assert {path.name for path in tmp_path.iterdir()} == {"bench.json", "bench.png"}
+
+
+def test_a_run_that_had_to_wait_for_a_core_is_told(paper):
+    busy = bench(paper, [timing("native", 0, 1.0), timing("native", 1, 1.0, process_cpu_s=3.0)])
+    assert any(remark.startswith("1 of 2 runs") for remark in bench_tables.remarks(busy))
+    assert not bench_tables.remarks(bench(paper, [timing("native", 0, 1.0)]))
+
+
+def test_each_engine_makes_the_same_steps_at_the_same_time_step(paper):
+    workload = bar(paper, quick=False)
+    schedules = [get_engine(name).schedule(workload.case) for name in DEFAULT_ENGINES]
+    assert {(s.step_s, s.rest, s.penetration) for s in schedules} == {(5e-5, 24_000, 90_000)}
+    assert schedules[0].samples == schedules[0].frames == 2
+    assert workload.bed is paper
+    assert get_engine("native").schedule(bar(paper, quick=True).case).steps == 240 + 900
+
+
+def test_the_time_to_solution_is_that_of_the_whole_case_at_each_ones_own_step(paper):
+    case = time_to_solution(paper, quick=True).case
+    assert [get_engine(name).schedule(case).steps for name in DEFAULT_ENGINES] == [
+        *(102_000, 204_000, 204_000)
+    ]
+
+
+def test_a_larger_bed_is_wider_and_no_deeper(paper):
+    workload = static(9440)(paper, False)
+    container, particles = workload.bed.resolved["container"], workload.bed.resolved["particles"]
+    assert container["width_m"] == pytest.approx(1.5) and container["height_m"] == 0.15
+    assert particles["count"] == 9440 and "bar" not in workload.case.resolved
+    assert workload.case.resolved["time"]["rest_s"] == 0
+    # whatever the number of steps, it is the same bed
+    assert static(9440)(paper, True).bed.hash == workload.bed.hash
+    assert static(9440)(paper, True).case.hash != workload.case.hash
+    assert [static_name(n) for n in (1, 1500, 10_000, 4_000_000)] == [
+        *("static-1", "static-1500", "static-10k", "static-4M")
+    ]
+
+
+LOOP = "Loop time of {} on 1 procs for {} steps with 944 atoms, finish time Sun Nov 22 10:10:37\n"
+
+
+def test_the_time_of_liggghts_is_that_of_its_last_run(paper):
+    engine, case = get_engine("liggghts"), bar(paper, quick=True).case
+    log = LOOP.format("1.2e-05", 0) + "Pair time\n\n" + LOOP.format("12.1", 1140)
+    assert told(engine, case, log).wall_s == 12.1
+    with pytest.raises(EngineFailure, match="made 0 steps instead of 1140"):
+        told(engine, case, LOOP.format("1.2e-05", 0))
+
+
+@pytest.mark.parametrize("name", DEFAULT_ENGINES)
+@pytest.mark.parametrize("log", ["", "no word of time\n", "[1]\n", '{"steps": 1140}\n'])
+def test_an_engine_that_says_no_time_has_failed(name, log, paper):
+    with pytest.raises(EngineFailure, match="how long"):
+        told(get_engine(name), bar(paper, quick=True).case, log)
+
+
+def test_engines_take_turns_and_one_that_fails_is_not_counted(paper, tmp_path, monkeypatch):
+    ran = []
+
+    def fake(number, workload, engine, packing, run_dir, tell):
+        ran.append((number, workload.name, engine.name))
+        if (number, workload.name, engine.name) == (1, "two", "yade"):
+            raise EngineFailure("was ended by signal 9 (SIGKILL)")
+        return timing(engine.name, number, 1.0, workload.name)
+
+    monkeypatch.setattr(bench_runs, "time_run", fake)
+    monkeypatch.setattr(bench_runs, "bed", lambda *_: None)
+    monkeypatch.setattr(bench_runs, "_present", lambda engines: (dict.fromkeys(engines, "1"), {}))
+    workloads = [Workload(name, paper, paper) for name in ("one", "two")]
+    found = bench_runs.run_bench(
+        paper, workloads, ["native", "yade"], 3, SimpleNamespace(root=tmp_path), Console(quiet=True)
+    )
+    each = [("one", "native"), ("one", "yade"), ("two", "native"), ("two", "yade")]
+    assert ran == [(k, *run) for k in range(3) for run in each][:-1]
+    assert found.failures == {("two", "yade"): "yade was ended by signal 9 (SIGKILL)"}
+    assert not found.of("two", "yade") and len(found.of("two", "native")) == 3
+    assert [(row.workload, row.engine) for row in found.rows()] == each[:-1]
+
+
+def test_memory_per_particle_is_above_that_of_the_program(paper):
+    timings = [
+        timing("native", 0, 1.0, f"static-{n}", particles=n, peak_memory_bytes=10_000_000 + 500 * n)
+        for n in (1, 1000, 10_000)
+    ]
+    packing_s = {"static-1": 0.0, "static-1000": 1.5, "static-10000": None}
+    found = bench_scaling.sizes(bench(paper, timings), packing_s)
+    assert [(size.particles, size.packing_s) for size in found] == [(1000, 1.5), (10_000, None)]
+    assert [size.bytes_per_particle for size in found] == [
+        pytest.approx(499.5),
+        pytest.approx(500, rel=1e-3),
+    ]
+    assert bench_scaling.sizes(bench(paper, timings[1:]), packing_s) == []
+
+
+def test_the_sizes_are_powers_of_ten_and_the_largest():
+    assert sizes_up_to(1000) == [1000]
+    assert sizes_up_to(100_000) == [1000, 10_000, 100_000]
+    assert sizes_up_to(4_000_000) == [1000, 10_000, 100_000, 1_000_000, 4_000_000]
+
+
+def test_a_quick_run_of_the_native_solver_alone(tmp_path):
+    options = ["--quick", "--engines", "native", "--workloads", "bar,time-to-solution"]
+    command = [
+        "bench",
+        *options,
+        "--case",
+        small_file(tmp_path),
+        "--json",
+        tmp_path / "numbers.json",
+    ]
+    ended = crossdem(*command, cwd=tmp_path)
+    assert ended.returncode == 0, ended.stderr
+    assert "settling" in ended.stdout and "timing: done" in ended.stdout
+    assert "time-to-solution: 40 particles, 2,000 steps of 100 µs" in ended.stdout
+    out = tmp_path / "results" / "bench"
+    assert {path.name for path in out.iterdir()} == {
+        *("packings", "bench.json", "bench.png", "crossdem.json")
+    }
+    found = json.loads((out / "bench.json").read_text())
+    assert found == json.loads((tmp_path / "numbers.json").read_text())
+    assert [(t["round"], t["workload"]) for t in found["timings"]] == [
+        *((0, "bar"), (0, "time-to-solution"), (1, "bar"), (1, "time-to-solution"))
+    ]
+    assert all(0 < t["wall_s"] < t["process_wall_s"] for t in found["timings"])
+    assert {t["steps"] for t in found["timings"]} == {20 + 20, 2000}
+    assert found["machine"]["cores"] >= 1 and "-O" in found["engines"]["native"]
+    again = crossdem(*command, cwd=tmp_path)
+    assert again.returncode == 0 and "settling" not in again.stdout
+
+
+def test_a_quick_run_over_the_number_of_particles(tmp_path):
+    command = ["bench", "scaling", "--quick", "--largest", "1000", "--case", small_file(tmp_path)]
+    ended = crossdem(*command, cwd=tmp_path)
+    assert ended.returncode == 0, ended.stderr
+    found = json.loads((tmp_path / "results" / "bench" / "scaling.json").read_text())
+    [size] = found["sizes"]
+    assert size["particles"] == 1000 and 50 < size["bytes_per_particle"] < 5000
+    assert 0 < size["packing_s"] < 60 and size["ns_per_particle_step"]["median"] > 1
+    assert (tmp_path / "results" / "bench" / "scaling.png").exists()
+
+
+def test_a_missing_engine_is_named_and_left_out(tmp_path):
+    options = ["--quick", "--engines", "native,liggghts", "--workloads", "bar"]
+    ended = crossdem(
+        "bench",
+        *options,
+        "--case",
+        small_file(tmp_path),
+        cwd=tmp_path,
+        PATH=_without_engines(tmp_path),
+    )
+    assert ended.returncode == 3, ended.stderr
+    assert "liggghts is left out: liggghts is not installed" in ended.stdout
+    found = json.loads((tmp_path / "results" / "bench" / "bench.json").read_text())
+    assert {row["engine"] for row in found["rows"]} == {"native"}
+    assert list(found["left_out"]) == ["liggghts"]
+
+
+def test_an_engine_that_tells_no_time_is_named_and_not_counted(fake, tmp_path):
+    """The fake LIGGGHTS ends well, and says nothing of its loop time."""
+    options = ["--quick", "--engines", "native,liggghts", "--workloads", "bar"]
+    ended = crossdem("bench", *options, "--case", small_file(tmp_path), cwd=tmp_path)
+    assert ended.returncode == 3, ended.stderr
+    assert "bar: liggghts did not say how long its steps took" in ended.stdout
+    assert len(fake.process_ids()) == 1
+    fake.fault("crash while resting")
+    ended = crossdem("bench", *options, "--case", small_file(tmp_path), cwd=tmp_path)
+    assert ended.returncode == 3 and "bar: liggghts was ended by signal 6" in ended.stdout
+    assert not list((tmp_path / "results" / "bench").glob(f"{bench_runs.RUN}*"))
+
+
+@pytest.mark.parametrize(
+    "options, said",
+    [
+        (["--engines", "lammps"], "no engine that can be timed 'lammps'"),
+        (["--engines", "yade-averaged"], "there are native, liggghts, yade"),
+        (["--workloads", "static-7"], "no workload 'static-7'"),
+        (["--repeats", "0"], "0 is not in the range"),
+        (["--json", "."], "is a folder"),
+        (["--json", "nowhere/x.json"], "is a folder, or lies in one that is not there"),
+        (["--case", "nowhere.toml"], "nowhere.toml"),
+        (["--case", ROOT / "reference_cases/micro/head_on_pair.toml"], "placed by hand"),
+        (["--quick", "scaling"], "options of scaling stand behind its name"),
+        (["scaling", "--largest", "10"], "10 is not in the range"),
+        (["faster"], "No such command"),
+    ],
+)
+def test_bad_input_is_said_before_anything_is_written(options, said, tmp_path):
+    ended = crossdem("bench", *options, cwd=tmp_path)
+    assert ended.returncode == 2 and "Traceback" not in ended.stderr
+    assert said in ended.stderr.replace("\n", " ")
+    assert not list(tmp_path.iterdir())
