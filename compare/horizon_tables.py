@@ -81,7 +81,7 @@ def sentence(horizon: Horizon) -> str:
             f"until {until_s:.2g} s {does} what the native scheme of its name does, to {_metres(largest_m)}"
         )
     else:
-        parts.append("no engine was compared")
+        parts.append("no engine was compared in this way")
     silent = [
         one for one in horizon.engines if one.obstacle or one.outcome == outcomes.NOT_COMPARABLE
     ]

@@ -99,7 +99,7 @@ _tier = click.option(
     + ", ".join(
         f"{name} {seeds} packings with {twins} twins" for name, (seeds, twins) in TIERS.items()
     )
-    + ". --seeds and --twins come first.",
+    + ". --seeds and --twins override its numbers.",
 )
 ensemble = [
     _tier,

@@ -20,6 +20,7 @@ from crossdem.adapters.workflow.ensemble import run_ensemble
 from crossdem.adapters.workspace import Workspace
 
 from .progress import ProgressDisplay
+from .wording import plural
 
 # How large an ensemble is: packings, and perturbed twins of each beside the packing itself.
 TIERS = {"smoke": (4, 0), "nightly": (16, 2), "release": (32, 2)}
@@ -64,7 +65,7 @@ def run_engines(
             for engine in sorted(engines, key=lambda engine: engine != REFERENCE)
             for packing in started_from
         ]
-        display.say(f"{len(requests)} runs, {where(jobs, profile)}")
+        display.say(f"{plural(len(requests), 'run')}, {where(jobs, profile)}")
         results = run_ensemble(
             [(request, workspace.root) for request in requests],
             workspace.root / "workflow",
