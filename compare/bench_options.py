@@ -7,24 +7,17 @@ import click
 from .bench_clocks import CLOCKS
 from .bench_scaling import LARGEST, SMALLEST
 from .bench_workloads import QUICK_WORKLOADS, WORKLOADS
-from .options import taking
+from .options import names_among, taking
 
 PAPER = Path(__file__).resolve().parent.parent / "reference_cases" / "bar_penetration.toml"
 
 
-def names_among(known, what: str):
-    """A callback that takes names separated by commas, each of which must be known."""
+def _timed_engines(context, parameter, text: str) -> list[str]:
+    return names_among(text, CLOCKS, "engine that can be timed")
 
-    def names(context, parameter, text: str | None) -> list[str] | None:
-        if text is None:
-            return None
-        found = list(dict.fromkeys(name.strip() for name in text.split(",")))
-        for name in found:
-            if name not in known:
-                raise click.BadParameter(f"no {what} {name!r}; there are {', '.join(known)}")
-        return found
 
-    return names
+def _workloads(context, parameter, text: str | None) -> list[str] | None:
+    return None if text is None else names_among(text, WORKLOADS, "workload")
 
 
 def _json_file(context, parameter, path: Path | None) -> Path | None:
@@ -76,12 +69,12 @@ engines = click.option(
     "--engines",
     default=",".join(CLOCKS),
     show_default=True,
-    callback=names_among(CLOCKS, "engine that can be timed"),
+    callback=_timed_engines,
     help="Which engines to time, separated by commas.",
 )
 workloads = click.option(
     "--workloads",
-    callback=names_among(WORKLOADS, "workload"),
+    callback=_workloads,
     help=f"On what, separated by commas. [default: {','.join(WORKLOADS)}; with --quick {','.join(QUICK_WORKLOADS)}]",
 )
 

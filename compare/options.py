@@ -1,5 +1,6 @@
 """Options and arguments that several commands take."""
 
+from collections.abc import Collection
 from pathlib import Path
 
 import click
@@ -13,17 +14,22 @@ from .recorded import RECORDS
 from .runs import TIERS, WITHOUT_TIER, cores
 
 
+def names_among(text: str, known: Collection[str], what: str) -> list[str]:
+    """Names separated by commas, each once. Raises BadParameter for one that is not `known`."""
+    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
+    for name in names:
+        if name not in known:
+            raise click.BadParameter(f"no {what} {name!r}; there are {', '.join(known)}")
+    return names
+
+
 def engine_names(context, parameter, text: str) -> list[str]:
     if context.params.get("replay"):
         if text.strip() == "none":
             return []
         if context.get_parameter_source(parameter.name) is ParameterSource.DEFAULT:
             return [REFERENCE]
-    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
-    for name in names:
-        if name not in ENGINES:
-            raise click.BadParameter(f"no engine {name!r}; there are {', '.join(ENGINES)}")
-    return names
+    return names_among(text, ENGINES, "engine")
 
 
 def time_steps(context, parameter, text: str) -> list[float]:
