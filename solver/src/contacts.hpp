@@ -30,7 +30,7 @@ struct SurfaceContact {
 /// [m] Neighbours within a fifth of the smallest diameter are listed: wide enough that lists last hundreds of steps in
 /// a bed that creeps, narrow enough that few pairs are looked at in vain.
 inline double list_skin(const Particles& particles) {
-  constexpr double share_of_diameter = 0.2;
+  constexpr double share_of_diameter = 0.05;
   return share_of_diameter * 2 * *std::min_element(particles.radius.begin(), particles.radius.end());
 }
 

@@ -11,16 +11,15 @@ namespace crossdem {
 /// Resultant of the contact forces on one particle: Eqs. (10)-(12).
 struct Load {
   Vector2 force = Vector2::Zero();  // [N]
-  double moment = 0.0;              // [N m], counter-clockwise
+  double rim = 0.0;                 // [N], sum of lever x f_s: the moment of Eq. (12) is -radius x rim
+  double moment = 0.0;              // [N m], counter-clockwise, where a scheme has moments of other kinds
   double work = 0.0;                // [J], f_n du_n + f_s du_s of the contacts that list the particle first
 };
 
-/// Eqs. (13)-(18): what a load does to the velocities within `dt`.
+/// Eqs. (12)-(18): what a load does to the velocities within `dt`.
 inline void accelerate(Particles& p, std::size_t i, const Load& load, double gravity, double dt) {
-  Vector2 acceleration = load.force / p.mass[i];  // Eqs. (13), (14)
-  acceleration.y() -= gravity;
-  p.velocity[i] += acceleration * dt;            // Eqs. (16), (17)
-  p.spin[i] += load.moment / p.inertia[i] * dt;  // Eqs. (15), (18)
+  p.velocity[i] += load.force * (dt / p.mass[i]) - Vector2(0.0, gravity * dt);  // Eqs. (13), (14), (16), (17)
+  p.spin[i] -= load.rim * (p.radius[i] * (dt / p.inertia[i]));                  // Eqs. (12), (15), (18)
 }
 
 /// Eqs. (22)-(24).

@@ -51,10 +51,15 @@ Particles jittered_lattice(const Case& setup, std::uint64_t seed) {
   const std::size_t columns = 1 + static_cast<std::size_t>(free_width / recipe.lattice_spacing);
   const double left = margin + 0.5 * (free_width - static_cast<double>(columns - 1) * recipe.lattice_spacing);
 
+  // Numbered column by column, so that neighbours in a bed are neighbours in memory however wide it is; where the top row
+  // is not full, its columns are the first.
+  const std::size_t low = radii.size() / columns;
+  const std::size_t in_high_columns = radii.size() % columns * (low + 1);
   Particles particles;
   for (std::size_t i = 0; i < radii.size(); ++i) {
-    const std::size_t row = i / columns;
-    const std::size_t column = i % columns;
+    const bool high = i < in_high_columns;
+    const std::size_t column = high ? i / (low + 1) : radii.size() % columns + (i - in_high_columns) / low;
+    const std::size_t row = high ? i % (low + 1) : (i - in_high_columns) % low;
     const Vector2 node(left + static_cast<double>(column) * recipe.lattice_spacing,
                        margin + static_cast<double>(row) * recipe.lattice_spacing);
     const double dx = random.within(recipe.jitter);

@@ -32,13 +32,13 @@ struct DiscInMotion {
 struct SurfaceForce {
   ContactForce force;
   Vector2 normal = Vector2::Zero();  // from the disc to the surface
-  double arm = 0.0;                  // [m], of the moment
+  double lever = 0.0;                // of the moment: arm / radius
   double work = 0.0;                 // [J], f_n du_n + f_s du_s
 };
 
-/// Eqs. (2), (12): the moment's arm of a disc [m]; as printed the whole radius.
-inline double moment_arm(TorqueArm reading, double radius, double overlap) {
-  return reading == TorqueArm::radius ? radius : radius - 0.5 * overlap;
+/// Eqs. (2), (12): the moment's arm over the radius; as printed the whole radius.
+inline double moment_lever(TorqueArm reading, double radius, double overlap) {
+  return reading == TorqueArm::radius ? 1.0 : 1.0 - 0.5 * overlap / radius;
 }
 
 /// The law of a pair, a wall or the bar in the place of j. False where they do not touch.
@@ -52,11 +52,12 @@ bool surface_force(const Law& law, const World& w, Surface surface, const DiscIn
   }
   const double overlap = disc.radius - nearest.distance;
   f.normal = nearest.normal;
-  f.arm = moment_arm(law.readings.torque_arm, disc.radius, overlap);
-  const RelativeMotion moved(disc.displacement - w.surfaces.displacement(surface), f.arm * disc.rotation, f.normal);
+  f.lever = moment_lever(law.readings.torque_arm, disc.radius, overlap);
+  const double arm = f.lever * disc.radius;
+  const RelativeMotion moved(disc.displacement - w.surfaces.displacement(surface), arm * disc.rotation, f.normal);
   RelativeDisplacement u{moved.normal, moved.shear, overlap, moved.normal, moved.shear};
   if (law.readings.dashpot_velocity == DashpotVelocity::true_velocity) {
-    const RelativeMotion velocity(disc.velocity * w.dt - w.surfaces.displacement(surface), f.arm * disc.spin * w.dt,
+    const RelativeMotion velocity(disc.velocity * w.dt - w.surfaces.displacement(surface), arm * disc.spin * w.dt,
                                   f.normal);
     u.damped_normal = velocity.normal;
     u.damped_shear = velocity.shear;
@@ -83,8 +84,8 @@ class Step {
     for (PaperContacts::Pair& contact : contacts_.pairs()) {
       PairForce f;
       if (!pair_force(contact, f)) continue;
-      add(contact.i, f.force, f.normal, f.arm_i);
-      add(contact.j, f.force, -f.normal, f.arm_j);
+      add(contact.i, f.force, f.normal, f.lever_i);
+      add(contact.j, f.force, -f.normal, f.lever_j);
     }
     for (PaperContacts::OnSurface& contact : contacts_.on_surfaces()) surface_load(contact);
     for (std::size_t i = 0; i < p_.count(); ++i) scheme_.integrator.advance(p_, i, w_.loads[i], w_.gravity, w_.dt);
@@ -99,7 +100,7 @@ class Step {
     for (std::size_t i = 0; i < p_.count(); ++i) {
       for (; pair != contacts_.pairs().end() && pair->i == i; ++pair) {
         PairForce f;
-        if (pair_force(*pair, f)) add(pair->i, f.force, f.normal, f.arm_i);
+        if (pair_force(*pair, f)) add(pair->i, f.force, f.normal, f.lever_i);
       }
       for (; on_surface != contacts_.on_surfaces().end() && on_surface->i == i; ++on_surface) surface_load(*on_surface);
       scheme_.integrator.advance(p_, i, w_.loads[i], w_.gravity, w_.dt);
@@ -111,8 +112,8 @@ class Step {
   struct PairForce {
     ContactForce force;
     Vector2 normal = Vector2::Zero();  // from i to j
-    double arm_i = 0.0;                // [m], of the moment
-    double arm_j = 0.0;
+    double lever_i = 0.0;              // of the moment: arm / radius
+    double lever_j = 0.0;
   };
 
   void begin() {
@@ -126,8 +127,8 @@ class Step {
     w_.clear_loads();
   }
 
-  [[nodiscard]] double arm(std::uint32_t i, double overlap) const {
-    return moment_arm(scheme_.law.readings.torque_arm, p_.radius[i], overlap);
+  [[nodiscard]] double lever(std::uint32_t i, double overlap) const {
+    return moment_lever(scheme_.law.readings.torque_arm, p_.radius[i], overlap);
   }
 
   /// False where the two do not touch.
@@ -143,14 +144,16 @@ class Step {
     }
     const double distance = std::sqrt(distance_squared);
     const double overlap = reach - distance;
-    f.normal = between / distance;
-    f.arm_i = arm(i, overlap);
-    f.arm_j = arm(j, overlap);
+    f.normal = between * (1.0 / distance);
+    f.lever_i = lever(i, overlap);
+    f.lever_j = lever(j, overlap);
+    const double arm_i = f.lever_i * p_.radius[i];
+    const double arm_j = f.lever_j * p_.radius[j];
     const RelativeMotion moved(p_.displacement[i] - p_.displacement[j],
-                               f.arm_i * p_.rotation[i] + f.arm_j * p_.rotation[j], f.normal);
+                               arm_i * p_.rotation[i] + arm_j * p_.rotation[j], f.normal);
     RelativeDisplacement u{moved.normal, moved.shear, overlap, moved.normal, moved.shear};
     if (scheme_.law.readings.dashpot_velocity == DashpotVelocity::true_velocity) {
-      const RelativeMotion velocity(p_.velocity[i] - p_.velocity[j], f.arm_i * p_.spin[i] + f.arm_j * p_.spin[j],
+      const RelativeMotion velocity(p_.velocity[i] - p_.velocity[j], arm_i * p_.spin[i] + arm_j * p_.spin[j],
                                     f.normal);
       u.damped_normal = velocity.normal * w_.dt;
       u.damped_shear = velocity.shear * w_.dt;
@@ -167,15 +170,15 @@ class Step {
     SurfaceForce f;
     if (!surface_force(scheme_.law, w_, contact.surface, disc, contact.memory, f)) return;
     w_.loads[i].work += f.work;
-    w_.totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.arm));
+    w_.totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever));
   }
 
   /// Eqs. (10)-(12): the load of one contact on particle i, whose partner lies in direction `normal`. Returns the
   /// force.
-  Vector2 add(std::uint32_t i, const ContactForce& force, const Vector2& normal, double arm_i) {
+  Vector2 add(std::uint32_t i, const ContactForce& force, const Vector2& normal, double lever_i) {
     Vector2 on_i = received(force, normal);
     w_.loads[i].force += on_i;
-    w_.loads[i].moment -= arm_i * force.shear;
+    w_.loads[i].rim += lever_i * force.shear;
     return on_i;
   }
 

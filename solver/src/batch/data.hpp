@@ -25,7 +25,7 @@ struct alignas(64) Disc {
 struct alignas(32) Load {
   double force_x = 0.0;  // [N]
   double force_y = 0.0;  // [N]
-  double moment = 0.0;   // [N m]
+  double rim = 0.0;      // [N], sum of f_s: the moment of Eq. (12) is -radius x rim
   double work = 0.0;     // [J], f_n du_n + f_s du_s
 };
 
@@ -48,9 +48,9 @@ struct alignas(64) Group {
   Column spin;        // [rad/s]
   Column rotation;    // [rad], of the last step
   Column angle;       // [rad]
-  Column mass;        // [kg]
-  Column inertia;     // [kg m^2]
   Column work;        // [J], since the start
+  Column push;        // [s/kg], dt / mass: velocity per force
+  Column turn;        // [s/(kg m)], radius x dt / inertia: spin per force at the rim
   Column listed_x;    // [m], where the particle was when its neighbours were listed
   Column listed_y;    // [m]
 };

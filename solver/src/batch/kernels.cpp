@@ -97,121 +97,204 @@ HWY_INLINE void store_columns(Vector a, Vector b, Vector c, Vector d, RowOf row_
 }
 #endif
 
-/// Pairs whose discs may touch: direction from i to j, and Eqs. (1), (2).
+/// j minus i of a batch of pairs, and what of both is added.
+struct Between {
+  Vector x;      // [m]
+  Vector y;      // [m]
+  Vector dx;     // [m], displacements of the last step
+  Vector dy;     // [m]
+  Vector roll;   // [m], i plus j
+  Vector reach;  // [m], i plus j
+};
+
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+/// Whole discs, a line each: i times minus one or one is exact, and so is the sum what Sub and Add give.
+HWY_INLINE Between between(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
+  alignas(64) constexpr std::array<double, count> signs{-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0};
+  const Vector sign = hn::Load(lanes, signs.data());
+  const auto line = [&](std::size_t k) HWY_ATTR {
+    return hn::MulAdd(hn::Load(lanes, &discs[i[k]].x), sign, hn::Load(lanes, &discs[j[k]].x));
+  };
+  // Of lines 2 k and 2 k + 1 in turn: even are x, dx, roll, odd are y, dy, reach, side by side.
+  const std::array<Vector, count> d{line(0), line(1), line(2), line(3), line(4), line(5), line(6), line(7)};
+  const auto columns = [&](const std::array<Vector, 4>& pairs, Vector& first, Vector& second, Vector& third) HWY_ATTR {
+    const auto [a, b, c, e] = pairs;
+    const Vector low = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(b), a);
+    const Vector high = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(e), c);
+    first = hn::ConcatLowerLower(lanes, high, low);
+    third = hn::ConcatUpperUpper(lanes, high, low);
+    second = hn::ConcatLowerLower(lanes, hn::OddEvenBlocks(e, hn::SwapAdjacentBlocks(c)),
+                                  hn::OddEvenBlocks(b, hn::SwapAdjacentBlocks(a)));
+  };
+  const auto even = [&](std::size_t k) HWY_ATTR { return hn::InterleaveLower(lanes, d[k], d[k + 1]); };
+  const auto odd = [&](std::size_t k) HWY_ATTR { return hn::InterleaveUpper(lanes, d[k], d[k + 1]); };
+  Between all;
+  columns({even(0), even(2), even(4), even(6)}, all.x, all.dx, all.roll);
+  columns({odd(0), odd(2), odd(4), odd(6)}, all.y, all.dy, all.reach);
+  return all;
+}
+#else
+HWY_INLINE Between between(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
+  const auto first = [&](const std::uint32_t* of) {
+    return [discs, of](std::size_t k) HWY_ATTR { return &discs[of[k]].x; };
+  };
+  const auto second = [&](const std::uint32_t* of) {
+    return [discs, of](std::size_t k) HWY_ATTR { return &discs[of[k]].roll; };
+  };
+  Vector x;
+  Vector y;
+  Vector dx;
+  Vector dy;
+  Between all;
+  load_columns(first(i), x, y, dx, dy);
+  load_columns(first(j), all.x, all.y, all.dx, all.dy);
+  all.x = hn::Sub(all.x, x);
+  all.y = hn::Sub(all.y, y);
+  all.dx = hn::Sub(all.dx, dx);
+  all.dy = hn::Sub(all.dy, dy);
+  load_columns(second(i), x, y, dx, dy);
+  load_columns(second(j), all.roll, all.reach, dx, dy);
+  all.roll = hn::Add(all.roll, x);
+  all.reach = hn::Add(all.reach, y);
+  return all;
+}
+#endif
+
+/// Discs that may touch.
 struct Approach {
-  Vector normal_x;
-  Vector normal_y;
-  Vector normal;   // [m], du_n
-  Vector shear;    // [m], du_s
-  Vector overlap;  // [m]
-  Vector radius_i;
-  Vector radius_j;
-  Mask touch;
+  Between between;
+  Vector distance_squared;
+  Vector inverse;  // 1 / distance
 };
 
 HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
-  Vector xi;
-  Vector yi;
-  Vector dxi;
-  Vector dyi;
-  Vector xj;
-  Vector yj;
-  Vector dxj;
-  Vector dyj;
-  load_columns([&](std::size_t k) HWY_ATTR { return &discs[i[k]].x; }, xi, yi, dxi, dyi);
-  load_columns([&](std::size_t k) HWY_ATTR { return &discs[j[k]].x; }, xj, yj, dxj, dyj);
-  Vector roll_i;
-  Vector roll_j;
-  Vector unused;
-  Vector unused_too;
   Approach a;
-  load_columns([&](std::size_t k) HWY_ATTR { return &discs[i[k]].roll; }, roll_i, a.radius_i, unused, unused_too);
-  load_columns([&](std::size_t k) HWY_ATTR { return &discs[j[k]].roll; }, roll_j, a.radius_j, unused, unused_too);
-
-  const Vector between_x = hn::Sub(xj, xi);
-  const Vector between_y = hn::Sub(yj, yi);
-  const Vector reach = hn::Add(a.radius_i, a.radius_j);
-  const Vector distance_squared = hn::Add(hn::Mul(between_x, between_x), hn::Mul(between_y, between_y));
-  a.touch = hn::Lt(distance_squared, hn::Mul(reach, reach));
-  const Vector distance = hn::Sqrt(distance_squared);
-  a.overlap = hn::Sub(reach, distance);
-  a.normal_x = hn::Div(between_x, distance);
-  a.normal_y = hn::Div(between_y, distance);
-  const Vector relative_x = hn::Sub(dxi, dxj);
-  const Vector relative_y = hn::Sub(dyi, dyj);
-  a.normal = hn::Add(hn::Mul(relative_x, a.normal_x), hn::Mul(relative_y, a.normal_y));
-  a.shear = hn::Add(hn::Sub(hn::Mul(relative_y, a.normal_x), hn::Mul(relative_x, a.normal_y)), hn::Add(roll_i, roll_j));
+  a.between = between(i, j, discs);
+  a.distance_squared =
+      hn::Add(hn::Mul(a.between.x, a.between.x), hn::Mul(a.between.y, a.between.y));
+  a.inverse = hn::Div(hn::Set(lanes, 1.0), hn::Sqrt(a.distance_squared));
   return a;
 }
 
-struct Force {
-  Vector normal;
-  Vector shear;
+struct Forces {
+  Vector x;      // on j
+  Vector y;      // on j
+  Vector shear;  // f_s
+  Vector work;
 };
 
-/// TanakaLaw<DefaultReadings>::force, on all lanes; zero where discs do not touch.
-HWY_INLINE Force force(const Approach& a, const ContactParameters& p, double step, double* normal_spring,
-                       double* shear_spring) {
+/// Eqs. (1), (2), TanakaLaw<DefaultReadings>::force, and Eqs. (10), (11); zero where discs do not touch.
+HWY_INLINE Forces forces(const Approach& a, const ContactParameters& p, double dt, double* normal_spring,
+                         double* shear_spring) {
+  const Between& b = a.between;
   const Vector zero = hn::Zero(lanes);
-  const Vector dt = hn::Set(lanes, step);
+  const Vector normal_x = hn::Mul(b.x, a.inverse);
+  const Vector normal_y = hn::Mul(b.y, a.inverse);
+  const Vector u_n = hn::Neg(hn::Add(hn::Mul(b.dx, normal_x), hn::Mul(b.dy, normal_y)));
+  const Vector u_s = hn::Add(hn::Sub(hn::Mul(b.dx, normal_y), hn::Mul(b.dy, normal_x)), b.roll);
+  const Mask touch = hn::Lt(a.distance_squared, hn::Mul(b.reach, b.reach));
   Vector e_n = hn::Load(lanes, normal_spring);
   Vector e_s = hn::Load(lanes, shear_spring);
-  Vector du_n = a.normal;
-  Vector du_s = a.shear;
-  const Mask first = hn::And(a.touch, hn::Lt(e_n, zero));
+  Vector du_n = u_n;
+  Vector du_s = u_s;
+  const Mask first = hn::And(touch, hn::Lt(e_n, zero));
   if (HWY_UNLIKELY(!hn::AllFalse(lanes, first))) {  // Eqs. (3), (4)
-    const Vector share = hn::IfThenElseZero(hn::Gt(du_n, zero), hn::Min(hn::Div(a.overlap, du_n), hn::Set(lanes, 1.0)));
+    const Vector overlap = hn::Sub(b.reach, hn::Sqrt(a.distance_squared));
+    const Vector share = hn::IfThenElseZero(hn::Gt(du_n, zero), hn::Min(hn::Div(overlap, du_n), hn::Set(lanes, 1.0)));
     du_s = hn::IfThenElse(first, hn::Mul(du_s, share), du_s);
-    du_n = hn::IfThenElse(first, a.overlap, du_n);
+    du_n = hn::IfThenElse(first, overlap, du_n);
     e_n = hn::IfThenElse(first, zero, e_n);
     e_s = hn::IfThenElse(first, zero, e_s);
   }
   e_n = hn::Add(e_n, hn::Mul(hn::Set(lanes, p.normal_stiffness), du_n));  // Eq. (5)
-  const Mask acts = hn::AndNot(hn::Lt(e_n, zero), a.touch);               // Eq. (8)
-  const Vector dashpot_n = hn::Div(hn::Mul(hn::Set(lanes, p.normal_damping), du_n), dt);
-  const Vector dashpot_s = hn::Div(hn::Mul(hn::Set(lanes, p.shear_damping), du_s), dt);
+  const Mask acts = hn::AndNot(hn::Lt(e_n, zero), touch);                 // Eq. (8)
+  const Vector dashpot_n = hn::Mul(hn::Set(lanes, p.normal_damping / dt), du_n);
+  const Vector dashpot_s = hn::Mul(hn::Set(lanes, p.shear_damping / dt), du_s);
   e_s = hn::Add(e_s, hn::Mul(hn::Set(lanes, p.shear_stiffness), du_s));
   const Vector slip_force = hn::Mul(hn::Set(lanes, p.friction), e_n);
   const Mask slips = hn::Gt(hn::Abs(e_s), slip_force);
-  e_s = hn::IfThenElse(slips, hn::CopySign(slip_force, e_s), e_s);         // Eq. (9)
-  const Vector f_s = hn::IfThenElse(slips, e_s, hn::Add(e_s, dashpot_s));  // Eq. (7)
+  const Vector slipping = hn::CopySign(slip_force, e_s);  // Eq. (9)
+  const Vector f_n = hn::IfThenElseZero(acts, hn::Add(e_n, dashpot_n));  // Eq. (6)
+  const Vector f_s =
+      hn::IfThenElseZero(acts, hn::IfThenElse(slips, slipping, hn::Add(e_s, dashpot_s)));  // Eq. (7)
   hn::Store(hn::IfThenElse(acts, e_n, hn::Set(lanes, not_touching)), lanes, normal_spring);
-  hn::Store(hn::IfThenElseZero(acts, e_s), lanes, shear_spring);
-  return {hn::IfThenElseZero(acts, hn::Add(e_n, dashpot_n)), hn::IfThenElseZero(acts, f_s)};  // Eq. (6)
+  hn::Store(hn::IfThenElseZero(acts, hn::IfThenElse(slips, slipping, e_s)), lanes, shear_spring);
+  return {hn::Sub(hn::Mul(f_n, normal_x), hn::Mul(f_s, normal_y)),
+          hn::Add(hn::Mul(f_n, normal_y), hn::Mul(f_s, normal_x)), f_s,
+          hn::Add(hn::Mul(f_n, u_n), hn::Mul(f_s, u_s))};
 }
 
+/// Pair after pair: i receives the opposite of j, and the work.
+HWY_INLINE void add(Forces f, const std::uint32_t* i, const std::uint32_t* j, Load* loads) {
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  alignas(32) constexpr std::array<double, 4> signs_i{-1.0, -1.0, 1.0, 1.0};
+  alignas(32) constexpr std::array<double, 4> signs_j{1.0, 1.0, 1.0, 0.0};
+  const auto on_i = hn::Load(half_line, signs_i.data());
+  const auto on_j = hn::Load(half_line, signs_j.data());
+  const auto add_row = [&](hn::Vec<HalfLine> row, std::size_t k) HWY_ATTR {
+    double* load_i = &loads[i[k]].force_x;
+    hn::Store(hn::MulAdd(row, on_i, hn::Load(half_line, load_i)), half_line, load_i);
+    double* load_j = &loads[j[k]].force_x;
+    hn::Store(hn::MulAdd(row, on_j, hn::Load(half_line, load_j)), half_line, load_j);
+  };
+  transpose(f.x, f.y, f.shear, f.work);
+  const std::array<Vector, 4> rows{f.x, f.y, f.shear, f.work};
+#if HWY_TARGET == HWY_AVX2
+  for (std::size_t k = 0; k < count; ++k) add_row(rows[k], k);
+#else
+  for (std::size_t k = 0; k < upper; ++k) add_row(hn::LowerHalf(half_line, rows[k]), k);
+  for (std::size_t k = 0; k < upper; ++k) add_row(hn::UpperHalf(half_line, rows[k]), k + upper);
+#endif
+#else
+  alignas(64) std::array<Load, count> on_j;
+  store_columns(f.x, f.y, f.shear, f.work, [&](std::size_t k) HWY_ATTR { return &on_j[k].force_x; });
+  for (std::size_t k = 0; k < count; ++k) {
+    Load& load_i = loads[i[k]];
+    load_i = {load_i.force_x - on_j[k].force_x, load_i.force_y - on_j[k].force_y, load_i.rim + on_j[k].rim,
+              load_i.work + on_j[k].work};
+    Load& load_j = loads[j[k]];
+    load_j = {load_j.force_x + on_j[k].force_x, load_j.force_y + on_j[k].force_y, load_j.rim + on_j[k].rim,
+              load_j.work};
+  }
+#endif
+}
+
+/// A turn of the loop looks at one batch, takes the forces of the batch before it and adds those of the one before that:
+/// none of the three waits for another, where one batch after the other would wait for each root, division and sum.
 void AddPairForces(std::span<Pairs> batches, const Disc* discs, Load* loads, const ContactParameters& parameters,
                    double dt) {
-  alignas(64) std::array<Load, count> on_i;
-  alignas(64) std::array<Load, count> on_j;  // to be subtracted
-  for (Pairs& batch : batches) {
-    for (std::size_t begin = 0; begin < width; begin += count) {
-      const std::uint32_t* i = batch.i.data() + begin;
-      const std::uint32_t* j = batch.j.data() + begin;
-      const Approach a = approach(i, j, discs);
-      const Force f = force(a, parameters, dt, batch.normal_spring.data() + begin, batch.shear_spring.data() + begin);
-      const Vector x = hn::Sub(hn::Mul(f.shear, a.normal_y), hn::Mul(f.normal, a.normal_x));
-      const Vector y = hn::Neg(hn::Add(hn::Mul(f.normal, a.normal_y), hn::Mul(f.shear, a.normal_x)));
-      const Vector work = hn::Add(hn::Mul(f.normal, a.normal), hn::Mul(f.shear, a.shear));
-      store_columns(x, y, hn::Neg(hn::Mul(a.radius_i, f.shear)), work,
-                    [&](std::size_t k) HWY_ATTR { return &on_i[k].force_x; });
-      store_columns(x, y, hn::Mul(a.radius_j, f.shear), hn::Zero(lanes),
-                    [&](std::size_t k) HWY_ATTR { return &on_j[k].force_x; });
-      for (std::size_t k = 0; k < count; ++k) {
-        Load& load_i = loads[i[k]];
-        load_i = {load_i.force_x + on_i[k].force_x, load_i.force_y + on_i[k].force_y, load_i.moment + on_i[k].moment,
-                  load_i.work + on_i[k].work};
-        Load& load_j = loads[j[k]];
-        load_j = {load_j.force_x - on_j[k].force_x, load_j.force_y - on_j[k].force_y, load_j.moment - on_j[k].moment,
-                  load_j.work};
-      }
+  constexpr std::size_t parts = width / count;  // of a batch, each a turn
+  const std::size_t turns = parts * batches.size();
+  if (turns == 0) return;
+  const auto i = [&](std::size_t turn) { return batches[turn / parts].i.data() + count * (turn % parts); };
+  const auto j = [&](std::size_t turn) { return batches[turn / parts].j.data() + count * (turn % parts); };
+  const auto look = [&](std::size_t turn) HWY_ATTR { return approach(i(turn), j(turn), discs); };
+  const auto take = [&](const Approach& near, std::size_t turn) HWY_ATTR {
+    Pairs& batch = batches[turn / parts];
+    const std::size_t begin = count * (turn % parts);
+    return forces(near, parameters, dt, batch.normal_spring.data() + begin, batch.shear_spring.data() + begin);
+  };
+  const auto give = [&](const Forces& found, std::size_t turn) HWY_ATTR { add(found, i(turn), j(turn), loads); };
+
+  Forces found = take(look(0), 0);
+  if (turns > 1) {
+    Approach near = look(1);
+    for (std::size_t turn = 2; turn < turns; ++turn) {
+      const Approach next_near = look(turn);
+      const Forces next_found = take(near, turn - 1);
+      give(found, turn - 2);
+      near = next_near;
+      found = next_found;
     }
+    give(found, turns - 2);
+    found = take(near, turns - 1);
   }
+  give(found, turns - 1);
 }
 
 double Move(std::size_t particles, Group* groups, Disc* discs, Load* loads, double gravity, double step) {
   const Vector dt = hn::Set(lanes, step);
-  const Vector g = hn::Set(lanes, gravity);
+  const Vector fall = hn::Set(lanes, gravity * step);
   const Vector half = hn::Set(lanes, 0.5);
   Vector farthest = hn::Zero(lanes);
   for (std::size_t i = 0; i < particles; i += count) {
@@ -219,8 +302,9 @@ double Move(std::size_t particles, Group* groups, Disc* discs, Load* loads, doub
     const std::size_t begin = i % width;
     Disc* disc = discs + i;
     Load* load = loads + i;
-    const auto update = [begin](Column& column, Vector added) HWY_ATTR {
-      const Vector sum = hn::Add(hn::Load(lanes, column.data() + begin), added);
+    const auto of = [begin](const Column& column) HWY_ATTR { return hn::Load(lanes, column.data() + begin); };
+    const auto update = [begin, &of](Column& column, Vector added) HWY_ATTR {
+      const Vector sum = hn::Add(of(column), added);
       hn::Store(sum, lanes, column.data() + begin);
       return sum;
     };
@@ -230,29 +314,27 @@ double Move(std::size_t particles, Group* groups, Disc* discs, Load* loads, doub
     Vector dy;
     Vector force_x;
     Vector force_y;
-    Vector moment;
+    Vector rim;
     Vector work;
     load_columns([&](std::size_t k) HWY_ATTR { return &disc[k].x; }, x, y, dx, dy);
-    load_columns([&](std::size_t k) HWY_ATTR { return &load[k].force_x; }, force_x, force_y, moment, work);
+    load_columns([&](std::size_t k) HWY_ATTR { return &load[k].force_x; }, force_x, force_y, rim, work);
     for (std::size_t k = 0; k < count; ++k) load[k] = {};
     update(group.work, work);
-    const Vector mass = hn::Load(lanes, group.mass.data() + begin);
-    const Vector inertia = hn::Load(lanes, group.inertia.data() + begin);
-    const Vector vx = update(group.velocity_x, hn::Mul(hn::Div(force_x, mass), dt));              // Eqs. (13), (16)
-    const Vector vy = update(group.velocity_y, hn::Mul(hn::Sub(hn::Div(force_y, mass), g), dt));  // Eqs. (14), (17)
-    const Vector spin = update(group.spin, hn::Mul(hn::Div(moment, inertia), dt));                // Eqs. (15), (18)
-    dx = hn::Mul(half, hn::Add(dx, hn::Mul(vx, dt)));                                             // Eq. (19)
-    dy = hn::Mul(half, hn::Add(dy, hn::Mul(vy, dt)));                                             // Eq. (20)
-    const Vector rotation =
-        hn::Mul(half, hn::Add(hn::Load(lanes, group.rotation.data() + begin), hn::Mul(spin, dt)));  // Eq. (21)
+    const Vector push = of(group.push);
+    const Vector vx = update(group.velocity_x, hn::Mul(force_x, push));                 // Eqs. (13), (16)
+    const Vector vy = update(group.velocity_y, hn::Sub(hn::Mul(force_y, push), fall));  // Eqs. (14), (17)
+    const Vector spin = update(group.spin, hn::Neg(hn::Mul(rim, of(group.turn))));      // Eqs. (12), (15), (18)
+    dx = hn::Mul(half, hn::Add(dx, hn::Mul(vx, dt)));                                   // Eq. (19)
+    dy = hn::Mul(half, hn::Add(dy, hn::Mul(vy, dt)));                                   // Eq. (20)
+    const Vector rotation = hn::Mul(half, hn::Add(of(group.rotation), hn::Mul(spin, dt)));  // Eq. (21)
     hn::Store(rotation, lanes, group.rotation.data() + begin);
     x = hn::Add(x, dx);             // Eq. (22)
     y = hn::Add(y, dy);             // Eq. (23)
     update(group.angle, rotation);  // Eq. (24)
     store_columns(x, y, dx, dy, [&](std::size_t k) HWY_ATTR { return &disc[k].x; });
     for (std::size_t k = 0; k < count; ++k) disc[k].roll = disc[k].radius * group.rotation[begin + k];
-    const Vector away_x = hn::Sub(x, hn::Load(lanes, group.listed_x.data() + begin));
-    const Vector away_y = hn::Sub(y, hn::Load(lanes, group.listed_y.data() + begin));
+    const Vector away_x = hn::Sub(x, of(group.listed_x));
+    const Vector away_y = hn::Sub(y, of(group.listed_y));
     const Vector away_squared = hn::Add(hn::Mul(away_x, away_x), hn::Mul(away_y, away_y));
     farthest = hn::Max(farthest, hn::IfThenElseZero(hn::FirstN(lanes, particles - i), away_squared));
   }

@@ -17,7 +17,7 @@ namespace crossdem::batch {
 void add_pair_forces(std::span<Pairs> pairs, const Disc* discs, Load* loads, const ContactParameters& parameters,
                      double dt);
 
-/// Eqs. (13)-(24): moves the particles under their loads, which are zero afterwards. All arrays are filled up to whole
+/// Eqs. (12)-(24): moves the particles under their loads, which are zero afterwards. All arrays are filled up to whole
 /// groups. Returns the largest squared distance [m^2] of a particle from where it was listed.
 double move(std::size_t particles, Group* groups, Disc* discs, Load* loads, double gravity, double dt);
 

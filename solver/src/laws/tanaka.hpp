@@ -42,7 +42,7 @@ struct TanakaLaw {
     if (spring.normal < 0.0) return lose(spring);  // Eq. (8)
 
     ContactForce f;
-    f.normal = spring.normal + p.normal_damping * u.damped_normal / dt;  // Eq. (6)
+    f.normal = spring.normal + p.normal_damping / dt * u.damped_normal;  // Eq. (6)
     if (readings.attraction == Attraction::clipped) f.normal = std::max(f.normal, 0.0);
 
     spring.shear += p.shear_stiffness * u.shear;
@@ -50,7 +50,7 @@ struct TanakaLaw {
     if (std::abs(spring.shear) > slip_force) {
       f.shear = spring.shear = std::copysign(slip_force, spring.shear);  // Eq. (9)
     } else {
-      f.shear = spring.shear + p.shear_damping * u.damped_shear / dt;  // Eq. (7)
+      f.shear = spring.shear + p.shear_damping / dt * u.damped_shear;  // Eq. (7)
     }
     return f;
   }

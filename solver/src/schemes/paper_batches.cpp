@@ -3,7 +3,8 @@
 namespace crossdem {
 namespace {
 
-constexpr double nowhere = 1e9;  // [m]
+constexpr double nowhere = 1e9;                   // [m]
+constexpr std::size_t particles_in_block = 1024;  // about 200 kB with their pairs
 
 std::size_t whole(std::size_t count) { return (count + batch::width - 1) / batch::width; }
 
@@ -12,10 +13,6 @@ std::size_t whole(std::size_t count) { return (count + batch::width - 1) / batch
 void BatchedPaperStepper::take(const World& w) {
   const Particles& p = w.particles;
   groups_.assign(whole(p.count()), {});
-  for (batch::Group& group : groups_) {
-    group.mass.fill(1.0);
-    group.inertia.fill(1.0);
-  }
   discs_.assign(groups_.size() * batch::width + 2, {});
   loads_.assign(discs_.size(), {});
   for (std::size_t i = 0; i < p.count(); ++i) {
@@ -32,9 +29,9 @@ void BatchedPaperStepper::take(const World& w) {
     group.spin[k] = p.spin[i];
     group.rotation[k] = p.rotation[i];
     group.angle[k] = p.angle[i];
-    group.mass[k] = p.mass[i];
-    group.inertia[k] = p.inertia[i];
     group.work[k] = w.contact_work[i];
+    group.push[k] = w.dt / p.mass[i];
+    group.turn[k] = p.radius[i] * (w.dt / p.inertia[i]);
     group.listed_x[k] = contacts().listed_at()[i].x();
     group.listed_y[k] = contacts().listed_at()[i].y();
   }
@@ -42,16 +39,30 @@ void BatchedPaperStepper::take(const World& w) {
   const auto lone = static_cast<std::uint32_t>(discs_.size() - 2);
   discs_[lone].x = nowhere;
   discs_[lone + 1].x = -nowhere;
-  const std::vector<PaperContacts::Pair>& listed = contacts().pairs();
-  pairs_.resize(whole(listed.size()));
-  for (std::size_t n = 0; n < pairs_.size() * batch::width; ++n) {
-    batch::Pairs& pairs = pairs_[n / batch::width];
-    const std::size_t k = n % batch::width;
-    const PaperContacts::Pair pair = n < listed.size() ? listed[n] : PaperContacts::Pair{lone, lone + 1, {}};
-    pairs.i[k] = pair.i;
-    pairs.j[k] = pair.j;
-    pairs.normal_spring[k] = pair.memory.touching ? pair.memory.normal : batch::not_touching;
-    pairs.shear_spring[k] = pair.memory.shear;
+  blocks_.clear();
+  pairs_.clear();
+  auto pair = contacts().pairs().cbegin();
+  std::size_t on_surface = 0;
+  for (std::size_t begin = 0; begin < p.count(); begin += particles_in_block) {
+    const std::size_t end = std::min(begin + particles_in_block, p.count());
+    Block block{{begin, end}, {pairs_.size(), 0}, {on_surface, 0}};
+    for (std::size_t n = 0; pair != contacts().pairs().cend() && pair->i < end; ++n, ++pair) {
+      const std::size_t k = n % batch::width;
+      if (k == 0) {
+        pairs_.emplace_back();
+        pairs_.back().i.fill(lone);
+        pairs_.back().j.fill(lone + 1);
+        pairs_.back().normal_spring.fill(batch::not_touching);
+      }
+      pairs_.back().i[k] = pair->i;
+      pairs_.back().j[k] = pair->j;
+      pairs_.back().normal_spring[k] = pair->memory.touching ? pair->memory.normal : batch::not_touching;
+      pairs_.back().shear_spring[k] = pair->memory.shear;
+    }
+    while (on_surface < contacts().on_surfaces().size() && contacts().on_surfaces()[on_surface].i < end) ++on_surface;
+    block.pairs.end = pairs_.size();
+    block.on_surfaces.end = on_surface;
+    blocks_.push_back(block);
   }
 }
 
@@ -69,12 +80,14 @@ void BatchedPaperStepper::give_back(World& w) {
     p.angle[i] = group.angle[k];
     w.contact_work[i] = group.work[k];
   }
-  std::vector<PaperContacts::Pair>& listed = contacts().pairs();
-  for (std::size_t n = 0; n < listed.size(); ++n) {
-    const batch::Pairs& pairs = pairs_[n / batch::width];
-    const std::size_t k = n % batch::width;
-    const bool touching = pairs.normal_spring[k] >= 0.0;
-    listed[n].memory = touching ? ContactSpring{pairs.normal_spring[k], pairs.shear_spring[k], true} : ContactSpring{};
+  auto pair = contacts().pairs().begin();
+  for (const Block& block : blocks_) {
+    for (std::size_t n = 0; pair != contacts().pairs().end() && pair->i < block.particles.end; ++n, ++pair) {
+      const batch::Pairs& pairs = pairs_[block.pairs.begin + n / batch::width];
+      const std::size_t k = n % batch::width;
+      const bool touching = pairs.normal_spring[k] >= 0.0;
+      pair->memory = touching ? ContactSpring{pairs.normal_spring[k], pairs.shear_spring[k], true} : ContactSpring{};
+    }
   }
 }
 

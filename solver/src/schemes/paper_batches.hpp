@@ -31,9 +31,18 @@ class BatchedPaperStepper final : public Stepper {
       take(w);
     }
     w.totals.clear();
-    batch::add_pair_forces(pairs_, discs_.data(), loads_.data(), w.particle_particle, w.dt);
-    for (PaperContacts::OnSurface& contact : contacts().on_surfaces()) surface_load(w, contact);
-    moved_ = std::sqrt(batch::move(w.particles.count(), groups_.data(), discs_.data(), loads_.data(), w.gravity, w.dt));
+    double farthest_squared = 0.0;
+    for (const Block& block : blocks_) {
+      batch::add_pair_forces({&pairs_[block.pairs.begin], block.pairs.count()}, discs_.data(), loads_.data(),
+                             w.particle_particle, w.dt);
+      for (std::size_t k = block.on_surfaces.begin; k < block.on_surfaces.end; ++k)
+        surface_load(w, contacts().on_surfaces()[k]);
+      const std::size_t begin = block.particles.begin;
+      farthest_squared = std::max(
+          farthest_squared, batch::move(block.particles.count(), &groups_[begin / batch::width], &discs_[begin],
+                                        &loads_[begin], w.gravity, w.dt));
+    }
+    moved_ = std::sqrt(farthest_squared);
     w.enter_impulses(1.0);
     ++w.steps;
   }
@@ -54,10 +63,24 @@ class BatchedPaperStepper final : public Stepper {
     const Vector2 on_disc = received(f.force, f.normal);
     load.force_x += on_disc.x();
     load.force_y += on_disc.y();
-    load.moment -= f.arm * f.force.shear;
+    load.rim += f.lever * f.force.shear;
     load.work += f.work;
     w.totals.add(w.surfaces, contact.surface, motion.centre, on_disc);
   }
+
+  struct Range {
+    std::size_t begin;
+    std::size_t end;
+    [[nodiscard]] std::size_t count() const { return end - begin; }
+  };
+
+  /// Particles that move as soon as the forces of the pairs are there that list one of them first, and their contacts
+  /// with surfaces: pairs of later particles need them no more, and all is still near the processor.
+  struct Block {
+    Range particles;
+    Range pairs;  // batches
+    Range on_surfaces;
+  };
 
   /// From the world and the list into batches.
   void take(const World& w);
@@ -71,6 +94,7 @@ class BatchedPaperStepper final : public Stepper {
   std::vector<batch::Load> loads_;
   std::vector<batch::Group> groups_;
   std::vector<batch::Pairs> pairs_;
+  std::vector<Block> blocks_;
   double moved_ = 0.0;  // [m], farthest of any particle since the list was made
 };
 
