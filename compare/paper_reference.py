@@ -1,8 +1,9 @@
 """The paper's scheme once more, in plain Python, equation by equation: what the native solver is checked against.
 
 Written from the paper (Eqs 1-24) and the list of its readings, not from the solver: every pair is looked at in every
-step, and nothing is fast. Good for a few dozen particles. What it shares with the solver is the order of the sums, so
-that the two can come to the same bits. Units are SI; angles count counter-clockwise.
+step, and nothing is fast. Good for a few dozen particles. What it shares with the solver is the order of the sums and
+which constants are multiplied first, so that the two can come to the same bits. Units are SI; angles count
+counter-clockwise.
 """
 
 from __future__ import annotations
@@ -153,7 +154,8 @@ class _Bed:
             reach = r + self.radius[j]
             if dx * dx + dy * dy < reach * reach and j != i:
                 distance = math.sqrt(dx * dx + dy * dy)
-                yield _Touch(j, law, reach - distance, dx / distance, dy / distance)
+                inverse = 1 / distance
+                yield _Touch(j, law, reach - distance, dx * inverse, dy * inverse)
 
     def surfaces(self, i: int) -> Iterator[_Touch]:
         """Walls and bar in contact with particle i."""
@@ -180,7 +182,7 @@ class _Bed:
         return min(max(x, centre - half), centre + half) - x, min(max(y, self.tip), top) - y
 
     def clear_loads(self) -> None:
-        self.load = [[0.0, 0.0, 0.0] for _ in self.particles]  # X, Y, M
+        self.load = [[0.0, 0.0, 0.0] for _ in self.particles]  # X, Y, -M / r
         self.bar_force, self.tip_force, self.floor_force = (0.0, 0.0), 0.0, 0.0
 
     def receive(self, i: int, touch: _Touch, f_n: float, f_s: float) -> None:
@@ -190,7 +192,7 @@ class _Bed:
         load = self.load[i]
         load[0] += x
         load[1] += y
-        load[2] -= self.arm(i, touch) * f_s
+        load[2] += self.lever(i, touch) * f_s
         if touch.partner == "bar":
             self.bar_force = (self.bar_force[0] - x, self.bar_force[1] - y)
             if self.position[i][1] < self.tip:
@@ -198,10 +200,13 @@ class _Bed:
         elif touch.partner == "floor":
             self.floor_force -= y
 
-    def arm(self, i: int, touch: _Touch) -> float:
-        """From i's centre to where the shear force acts."""
+    def lever(self, i: int, touch: _Touch) -> float:
+        """From i's centre to where the shear force acts, in radii."""
         to_contact_point = self.reading["torque_arm"] == "contact_point"
-        return self.radius[i] - (touch.overlap / 2 if to_contact_point else 0.0)
+        return 1 - touch.overlap / 2 / self.radius[i] if to_contact_point else 1.0
+
+    def arm(self, i: int, touch: _Touch) -> float:
+        return self.lever(i, touch) * self.radius[i]
 
     def relative(self, motion: list, i: int, touch: _Touch, bar_motion: float) -> tuple:
         """Eqs 1, 2 for the displacements of a step, or for velocities."""
@@ -244,12 +249,12 @@ class _Bed:
                 kept = e_n if reading["lost_contact"] == "keep_negative" else 0.0
                 self.springs[i, touch.partner] = (kept, 0.0)
             return 0.0, 0.0
-        f_n = e_n + law["normal_damping_N_s_m"] * damped_n / dt  # Eq 6
+        f_n = e_n + law["normal_damping_N_s_m"] / dt * damped_n  # Eq 6
         if reading["attraction"] == "clipped":
             f_n = max(f_n, 0.0)
 
         e_s += law["shear_stiffness_N_m"] * u_s  # Eq 7
-        f_s = e_s + law["shear_damping_N_s_m"] * damped_s / dt
+        f_s = e_s + law["shear_damping_N_s_m"] / dt * damped_s
         cap = law["friction"] * (abs(f_n) if reading["slip_cap"] == "total" else e_n)
         if abs(e_s) > cap:  # Eq 9
             f_s = e_s = math.copysign(cap, e_s)
@@ -265,11 +270,11 @@ class _Bed:
         self.displace(i, averaged=integrator == "averaged_displacement")
 
     def accelerate(self, i: int, dt: float) -> None:
-        """Eqs 13-18."""
-        x, y, moment = self.load[i]
-        weight = self.case["gravity_m_s2"]
-        acceleration = (x / self.mass[i], y / self.mass[i] - weight, moment / self.inertia[i])
-        self.velocity[i] = [v + a * dt for v, a in zip(self.velocity[i], acceleration)]
+        """Eqs 12-18."""
+        x, y, shear = self.load[i]
+        push, turn = dt / self.mass[i], self.radius[i] * (dt / self.inertia[i])
+        gained = (x * push, y * push - self.case["gravity_m_s2"] * dt, -shear * turn)
+        self.velocity[i] = [v + more for v, more in zip(self.velocity[i], gained)]
 
     def displace(self, i: int, averaged: bool) -> None:
         """Eqs 19-24; if not averaged, a step's displacement is velocity times time."""
