@@ -27,11 +27,17 @@ struct SurfaceContact {
   [[nodiscard]] ParticlePair key() const { return {i, static_cast<std::uint32_t>(surface)}; }
 };
 
-/// [m] Neighbours within a fifth of the smallest diameter are listed: wide enough that lists last hundreds of steps in
-/// a bed that creeps, narrow enough that few pairs are looked at in vain.
+/// [m] Neighbours within this share of the smallest diameter are listed: few pairs are looked at in vain, and a list
+/// still lasts a hundred steps in a bed that creeps.
 inline double list_skin(const Particles& particles) {
-  constexpr double share_of_diameter = 0.05;
+  constexpr double share_of_diameter = 0.06;
   return share_of_diameter * 2 * *std::min_element(particles.radius.begin(), particles.radius.end());
+}
+
+/// Whether particle and surface are closer than `gap` [m].
+inline bool closer_than(double gap, const Particles& particles, const Surfaces& surfaces, std::uint32_t i,
+                        Surface surface) {
+  return surfaces.nearest_point(surface, particles.position[i]).distance < particles.radius[i] + gap;
 }
 
 /// Whose memory a contact is: one for both partners, or (readings "in turn") each particle its own.
@@ -44,15 +50,12 @@ class Contacts {
   using OnSurface = SurfaceContact<SurfaceMemory>;
 
   /// `skin` [m]: how far surfaces may be apart and still be in the list.
-  Contacts(MemoryOwner owner, double skin) : owner_(owner), skin_(skin) {}
+  Contacts(MemoryOwner owner, double skin) : owner_(owner), skin_(skin), width_(widths_of_skin * skin) {}
 
   /// True when something has moved so far that the list could miss a contact.
   [[nodiscard]] bool outdated(const Particles& particles, const Surfaces& surfaces) const {
     if (listed_at_.size() != particles.count()) return true;
-    double largest = 0.0;
-    for (std::size_t i = 0; i < particles.count(); ++i)
-      largest = std::max(largest, (particles.position[i] - listed_at_[i]).squaredNorm());
-    return outdated(std::sqrt(largest), surfaces);
+    return outdated(farthest(particles, listed_at_), surfaces);
   }
 
   /// The same; `moved` [m]: how far the farthest particle is from where it was listed.
@@ -61,26 +64,27 @@ class Contacts {
     return moved + std::max(moved, bar_moved) > skin_;
   }
 
-  /// Makes the list anew; contacts that stay in it keep their memory. Positions must be finite.
+  /// True when the list cannot be made of the candidates any more: the next rebuild() looks at all particles again.
+  [[nodiscard]] bool strayed(const Particles& particles, const Surfaces& surfaces) const {
+    if (searched_at_.size() != particles.count()) return true;
+    const double moved = farthest(particles, searched_at_);
+    const double bar_moved = surfaces.bar ? surfaces.bar->travel() - bar_searched_at_ : 0.0;
+    return skin_ + moved + std::max(moved, bar_moved) > width_;
+  }
+
+  /// Makes the list anew; contacts that stay in it keep their memory. Positions must be finite if they have strayed.
   void rebuild(const Particles& particles, const Surfaces& surfaces) {
-    std::vector<ParticlePair> close = close_pairs(particles, skin_);
-    if (owner_ == MemoryOwner::particle) {
-      const std::size_t half = close.size();
-      for (std::size_t k = 0; k < half; ++k) close.push_back({close[k].j, close[k].i});
-      std::sort(close.begin(), close.end());
-    }
+    if (strayed(particles, surfaces)) search(particles, surfaces);
     std::vector<Pair> pairs;
-    pairs.reserve(close.size());
-    for (const ParticlePair& pair : close) pairs.push_back({pair.i, pair.j, {}});
+    pairs.reserve(pairs_.size());
+    for (const ParticlePair& pair : candidates_)
+      if (closer_than(skin_, particles, pair)) pairs.push_back({pair.i, pair.j, {}});
     keep_memories(pairs_, pairs);
     pairs_ = std::move(pairs);
 
     std::vector<OnSurface> on_surfaces;
-    for (std::uint32_t i = 0; i < particles.count(); ++i)
-      for (const Surface surface : all_surfaces)
-        if (surfaces.present(surface) &&
-            surfaces.nearest_point(surface, particles.position[i]).distance < particles.radius[i] + skin_)
-          on_surfaces.push_back({i, surface, {}});
+    for (const OnSurface& candidate : surface_candidates_)
+      if (closer_than(skin_, particles, surfaces, candidate.i, candidate.surface)) on_surfaces.push_back(candidate);
     keep_memories(on_surfaces_, on_surfaces);
     on_surfaces_ = std::move(on_surfaces);
 
@@ -95,6 +99,32 @@ class Contacts {
   [[nodiscard]] const std::vector<OnSurface>& on_surfaces() const { return on_surfaces_; }
 
  private:
+  /// [m], how far any particle is from where it was.
+  static double farthest(const Particles& particles, const std::vector<Vector2>& was_at) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < particles.count(); ++i)
+      largest = std::max(largest, (particles.position[i] - was_at[i]).squaredNorm());
+    return std::sqrt(largest);
+  }
+
+  void search(const Particles& particles, const Surfaces& surfaces) {
+    candidates_ = close_pairs(particles, width_);
+    if (owner_ == MemoryOwner::particle) {
+      const std::size_t half = candidates_.size();
+      for (std::size_t k = 0; k < half; ++k) candidates_.push_back({candidates_[k].j, candidates_[k].i});
+      std::sort(candidates_.begin(), candidates_.end());
+    }
+    surface_candidates_.clear();
+    for (std::uint32_t i = 0; i < particles.count(); ++i) {
+      for (const Surface surface : all_surfaces) {
+        if (surfaces.present(surface) && closer_than(width_, particles, surfaces, i, surface))
+          surface_candidates_.push_back({i, surface, {}});
+      }
+    }
+    searched_at_ = particles.position;
+    if (surfaces.bar) bar_searched_at_ = surfaces.bar->travel();
+  }
+
   /// Both lists are sorted by key: hands the memories of contacts that stand in both from the old list to the new.
   template <class Contact>
   static void keep_memories(const std::vector<Contact>& old_list, std::vector<Contact>& new_list) {
@@ -106,12 +136,19 @@ class Contacts {
     }
   }
 
+  static constexpr double widths_of_skin = 7.0;  // wide enough that a search serves some ten lists
+
   MemoryOwner owner_;
-  double skin_;
+  double skin_;   // [m]
+  double width_;  // [m], of the gaps among the candidates
   std::vector<Pair> pairs_;             // sorted by i, then j
   std::vector<OnSurface> on_surfaces_;  // sorted by i, then surface
   std::vector<Vector2> listed_at_;      // positions when the list was made
   double bar_listed_at_ = 0.0;          // [m], the bar's travel then
+  std::vector<ParticlePair> candidates_;       // sorted as the pairs: all that come near while particles have not strayed
+  std::vector<OnSurface> surface_candidates_;  // sorted as those in the list; their memories mean nothing
+  std::vector<Vector2> searched_at_;           // positions when the candidates were found
+  double bar_searched_at_ = 0.0;               // [m], the bar's travel then
 };
 
 }  // namespace crossdem

@@ -50,6 +50,7 @@ struct Arguments {
   std::string output;
   std::uint64_t seed = 1;
   std::optional<long> steps;
+  std::size_t threads = 1;
 };
 
 void resolve(const Arguments& given) {
@@ -60,20 +61,20 @@ void resolve(const Arguments& given) {
 void pack(const Arguments& given) {
   const crossdem::Case setup = load(given.case_file, given.shown_name);
   claim_folder(given.output);
-  crossdem::write_packing(crossdem::make_packing(setup, given.seed), given.output);
+  crossdem::write_packing(crossdem::make_packing(setup, given.seed, given.threads), given.output);
 }
 
 void run(const Arguments& given) {
   const crossdem::Case setup = load(given.case_file, given.shown_name);
   const crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
   claim_folder(given.output);
-  crossdem::run(setup, packing, given.output);
+  crossdem::run(setup, packing, given.output, given.threads);
 }
 
 void measure(const Arguments& given) {
   const crossdem::Case setup = load(given.case_file, given.shown_name);
   const crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
-  const crossdem::Measurement found = crossdem::measure(setup, packing, given.steps);
+  const crossdem::Measurement found = crossdem::measure(setup, packing, given.steps, given.threads);
   const nlohmann::json line = {{"steps", found.steps},
                                {"particles", found.particles},
                                {"wall_s", found.wall},
@@ -108,6 +109,9 @@ int command_line(int argc, char** argv) {
   measurer->add_option("--packing", given.packing_file, "packing.csv, with packing.json beside it")->required();
   measurer->add_option("--steps", given.steps, "only so many, from the first on")
       ->check(CLI::Range(0L, std::numeric_limits<long>::max()));
+  for (CLI::App* threaded : {packer, runner, measurer})
+    threaded->add_option("--threads", given.threads, "at most so many, where the bed is large; the results are the same")
+        ->check(CLI::Range(1, 1024));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -37,7 +37,7 @@ void advance(Simulation& simulation, long steps, long stretch) {
 
 }  // namespace
 
-Measurement measure(const Case& setup, const Packing& packing, std::optional<long> steps) {
+Measurement measure(const Case& setup, const Packing& packing, std::optional<long> steps, std::size_t threads) {
   const long rest = setup.time.steps_in(setup.time.rest);
   const long all = rest + setup.time.steps_in(setup.time.penetration);
   const long asked = steps.value_or(all);
@@ -46,7 +46,7 @@ Measurement measure(const Case& setup, const Packing& packing, std::optional<lon
   const long resting = std::min(asked, rest);
   const long stretch = setup.time.steps_in(setup.time.sample_interval);
 
-  Simulation simulation(setup, particles_of(packing, setup), packing.bar_tip);
+  Simulation simulation(setup, particles_of(packing, setup), packing.bar_tip, threads);
   const double cpu_before = cpu_seconds();
   const auto started = std::chrono::steady_clock::now();
   advance(simulation, resting, stretch);

@@ -68,8 +68,7 @@ std::vector<ParticlePair> close_pairs(const Particles& particles, double gap) {
   for (std::uint32_t i = 0; i < particles.count(); ++i) {
     partners.clear();
     grid.for_each_near(particles.position[i], [&](std::uint32_t j) {
-      const double reach = particles.radius[i] + particles.radius[j] + gap;
-      if (j > i && (particles.position[j] - particles.position[i]).squaredNorm() < reach * reach) partners.push_back(j);
+      if (j > i && closer_than(gap, particles, {i, j})) partners.push_back(j);
     });
     std::sort(partners.begin(), partners.end());
     for (const std::uint32_t j : partners) pairs.push_back({i, j});

@@ -111,13 +111,13 @@ SchemeChoice settling_scheme(const SchemeChoice& choice) {
   return settles ? choice : SchemeChoice{.name = "paper", .readings = {}};
 }
 
-Packing make_packing(const Case& setup, std::uint64_t seed) {
+Packing make_packing(const Case& setup, std::uint64_t seed, std::size_t threads) {
   if (!setup.placed.empty()) return placed_by_hand(setup, seed);
   Case settling = setup;
   settling.time.step = setup.packing.step;
   settling.particle_wall.friction = setup.packing.wall_friction;
   settling.scheme = settling_scheme(setup.scheme);
-  Simulation simulation(settling, jittered_lattice(setup, seed), std::nullopt);
+  Simulation simulation(settling, jittered_lattice(setup, seed), std::nullopt, threads);
   const auto elapsed = [&] { return static_cast<double>(simulation.steps()) * settling.time.step; };
   double energy = 0.0;
   do {

@@ -64,9 +64,10 @@ World make_world(const Case& setup, Particles particles, std::optional<double> b
   return w;
 }
 
-Simulation::Simulation(const Case& setup, Particles particles, std::optional<double> bar_tip)
+Simulation::Simulation(const Case& setup, Particles particles, std::optional<double> bar_tip, std::size_t threads)
     : state_(std::make_unique<State>(make_world(setup, std::move(particles), bar_tip), nullptr)) {
   World& w = state_->world;
+  w.threads = threads;
   state_->stepper = make_stepper(setup, w);
   w.kinetic_at_start = kinetic_energy(w.particles);
   w.momentum_at_start = momentum(w.particles);

@@ -87,7 +87,13 @@ class Step {
       add(contact.i, f.force, f.normal, f.lever_i);
       add(contact.j, f.force, -f.normal, f.lever_j);
     }
-    for (PaperContacts::OnSurface& contact : contacts_.on_surfaces()) surface_load(contact);
+    for (auto contact = contacts_.on_surfaces().begin(); contact != contacts_.on_surfaces().end();) {
+      SurfaceTotals of_block;
+      const std::size_t block = contact->i / particles_in_block;
+      for (; contact != contacts_.on_surfaces().end() && contact->i / particles_in_block == block; ++contact)
+        surface_load(*contact, of_block);
+      w_.totals += of_block;
+    }
     for (std::size_t i = 0; i < p_.count(); ++i) scheme_.integrator.advance(p_, i, w_.loads[i], w_.gravity, w_.dt);
     end();
   }
@@ -102,7 +108,8 @@ class Step {
         PairForce f;
         if (pair_force(*pair, f)) add(pair->i, f.force, f.normal, f.lever_i);
       }
-      for (; on_surface != contacts_.on_surfaces().end() && on_surface->i == i; ++on_surface) surface_load(*on_surface);
+      for (; on_surface != contacts_.on_surfaces().end() && on_surface->i == i; ++on_surface)
+        surface_load(*on_surface, w_.totals);
       scheme_.integrator.advance(p_, i, w_.loads[i], w_.gravity, w_.dt);
     }
     end();
@@ -163,14 +170,14 @@ class Step {
     return true;
   }
 
-  void surface_load(PaperContacts::OnSurface& contact) {
+  void surface_load(PaperContacts::OnSurface& contact, SurfaceTotals& totals) {
     const std::uint32_t i = contact.i;
     const DiscInMotion disc{p_.position[i], p_.radius[i],   p_.displacement[i],
                             p_.rotation[i], p_.velocity[i], p_.spin[i]};
     SurfaceForce f;
     if (!surface_force(scheme_.law, w_, contact.surface, disc, contact.memory, f)) return;
     w_.loads[i].work += f.work;
-    w_.totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever));
+    totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever));
   }
 
   /// Eqs. (10)-(12): the load of one contact on particle i, whose partner lies in direction `normal`. Returns the

@@ -7,6 +7,10 @@
 
 namespace crossdem {
 
+/// What surfaces receive is summed up block by block of so many particles: each block's sum and their total are the same
+/// however many threads move them. As many as fit with their contacts into a processor's own cache, about 200 kB.
+inline constexpr std::size_t particles_in_block = 1024;
+
 /// What the particles received from the surfaces at the latest evaluation of forces.
 struct SurfaceTotals {
   std::array<Vector2, all_surfaces.size()> force{Vector2::Zero(), Vector2::Zero(), Vector2::Zero(),
@@ -18,6 +22,12 @@ struct SurfaceTotals {
     if (surface == Surface::bar) (surfaces.bar->touches_tip(centre) ? on_bar.tip : on_bar.shaft) -= received;
   }
   void clear() { *this = {}; }
+  SurfaceTotals& operator+=(const SurfaceTotals& other) {
+    for (std::size_t k = 0; k < force.size(); ++k) force[k] += other.force[k];
+    on_bar.tip += other.on_bar.tip;
+    on_bar.shaft += other.on_bar.shaft;
+    return *this;
+  }
 };
 
 struct World {
@@ -28,6 +38,7 @@ struct World {
   double gravity = 0.0;  // [m/s^2]
   double dt = 0.0;       // [s]
   long steps = 0;
+  std::size_t threads = 1;  // at most
 
   std::vector<Load> loads;  // by contacts, at the latest evaluation
   SurfaceTotals totals;     // at the latest evaluation

@@ -28,7 +28,7 @@ struct Packing {
 /// settling by the scheme of the case under its own container walls.
 /// Equal cases and seeds give equal bits. Throws SimulationError when the bed does not come to rest, CaseError when it
 /// is higher than the container or so low that the bar would reach the floor.
-Packing make_packing(const Case& setup, std::uint64_t seed);
+Packing make_packing(const Case& setup, std::uint64_t seed, std::size_t threads = 1);
 
 /// The scheme by which a bed settles: the paper's with the readings of the case. With a conventional integrator it
 /// would not come to rest at the paper's time step, and the other schemes are best compared on the paper's beds.

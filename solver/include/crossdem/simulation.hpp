@@ -56,8 +56,10 @@ class Simulation {
  public:
   /// `particles` with their positions and velocities; `bar_tip`: y of the bar's bottom face [m], none without a bar.
   /// Particles that overlap at the start are old contacts: normal spring k_n x overlap, shear spring zero. The scheme
-  /// "liggghts" sets the masses anew, by that code's own formula (the last bit may differ).
-  Simulation(const Case& setup, Particles particles, std::optional<double> bar_tip);
+  /// "liggghts" sets the masses anew, by that code's own formula (the last bit may differ). At most so many `threads`
+  /// move the particles, with the same results; for now only by the scheme "paper" with its default readings, and only
+  /// where each has thousands of them to move.
+  Simulation(const Case& setup, Particles particles, std::optional<double> bar_tip, std::size_t threads = 1);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
