@@ -30,7 +30,7 @@ struct SurfaceContact {
 /// [m] Neighbours within this share of the smallest diameter are listed: few pairs are looked at in vain, and a list
 /// still lasts a hundred steps in a bed that creeps.
 inline double list_skin(const Particles& particles) {
-  constexpr double share_of_diameter = 0.06;
+  constexpr double share_of_diameter = 0.05;
   return share_of_diameter * 2 * *std::min_element(particles.radius.begin(), particles.radius.end());
 }
 

@@ -13,7 +13,6 @@ struct Load {
   Vector2 force = Vector2::Zero();  // [N]
   double rim = 0.0;                 // [N], sum of lever x f_s: the moment of Eq. (12) is -radius x rim
   double moment = 0.0;              // [N m], counter-clockwise, where a scheme has moments of other kinds
-  double work = 0.0;                // [J], f_n du_n + f_s du_s of the contacts that list the particle first
 };
 
 /// Eqs. (12)-(18): what a load does to the velocities within `dt`.

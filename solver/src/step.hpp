@@ -89,8 +89,8 @@ class Step {
     }
     for (auto contact = contacts_.on_surfaces().begin(); contact != contacts_.on_surfaces().end();) {
       SurfaceTotals of_block;
-      const std::size_t block = contact->i / particles_in_block;
-      for (; contact != contacts_.on_surfaces().end() && contact->i / particles_in_block == block; ++contact)
+      const std::size_t block = contact->i / particles_in_sum;
+      for (; contact != contacts_.on_surfaces().end() && contact->i / particles_in_sum == block; ++contact)
         surface_load(*contact, of_block);
       w_.totals += of_block;
     }
@@ -166,7 +166,7 @@ class Step {
       u.damped_shear = velocity.shear * w_.dt;
     }
     f.force = scheme_.law.force(u, w_.particle_particle, w_.dt, contact.memory);
-    w_.loads[i].work += f.force.normal * u.normal + f.force.shear * u.shear;
+    w_.contact_work[i] += f.force.normal * u.normal + f.force.shear * u.shear;
     return true;
   }
 
@@ -176,7 +176,7 @@ class Step {
                             p_.rotation[i], p_.velocity[i], p_.spin[i]};
     SurfaceForce f;
     if (!surface_force(scheme_.law, w_, contact.surface, disc, contact.memory, f)) return;
-    w_.loads[i].work += f.work;
+    w_.contact_work[i] += f.work;
     totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever));
   }
 
@@ -190,7 +190,6 @@ class Step {
   }
 
   void end() {
-    for (std::size_t i = 0; i < p_.count(); ++i) w_.contact_work[i] += w_.loads[i].work;
     w_.enter_impulses(scheme_.integrator.kicks_twice() ? 0.5 : 1.0);
     ++w_.steps;
   }

@@ -7,9 +7,9 @@
 
 namespace crossdem {
 
-/// What surfaces receive is summed up block by block of so many particles: each block's sum and their total are the same
-/// however many threads move them. As many as fit with their contacts into a processor's own cache, about 200 kB.
-inline constexpr std::size_t particles_in_block = 1024;
+/// What surfaces receive is summed up for so many particles at a time, and then over these sums: the result does not
+/// depend on how many threads move the particles.
+inline constexpr std::size_t particles_in_sum = 1024;
 
 /// What the particles received from the surfaces at the latest evaluation of forces.
 struct SurfaceTotals {

@@ -21,7 +21,7 @@ struct alignas(64) Disc {
   double radius = 0.0;          // [m]
 };
 
-/// Eqs. (10)-(12) of one particle, and the work of the contacts that list it first.
+/// Eqs. (10)-(12) of one particle, and the work of the contacts that list it first, since the start.
 struct alignas(32) Load {
   double force_x = 0.0;  // [N]
   double force_y = 0.0;  // [N]
@@ -48,7 +48,6 @@ struct alignas(64) Group {
   Column spin;        // [rad/s]
   Column rotation;    // [rad], of the last step
   Column angle;       // [rad]
-  Column work;        // [J], since the start
   Column push;        // [s/kg], dt / mass: velocity per force
   Column turn;        // [s/(kg m)], radius x dt / inertia: spin per force at the rim
   Column listed_x;    // [m], where the particle was when its neighbours were listed

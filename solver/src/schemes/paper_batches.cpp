@@ -8,18 +8,18 @@
 namespace crossdem {
 namespace {
 
-constexpr std::size_t fewest_blocks = 4;  // in a share: with less to do, threads wait for one another too much
+constexpr std::size_t fewest_sums = 4;   // in a share: with less to do, threads wait for one another too much
 
 }  // namespace
 
 BatchedPaperStepper::BatchedPaperStepper(const Readings& readings, World& world)
     : plain_(PaperScheme{}, readings, world) {
   const std::size_t particles = world.particles.count();
-  const std::size_t blocks = (particles + particles_in_block - 1) / particles_in_block;
-  const std::size_t shares = std::clamp<std::size_t>(blocks / fewest_blocks, 1, world.threads);
+  const std::size_t sums = (particles + particles_in_sum - 1) / particles_in_sum;
+  const std::size_t shares = std::clamp<std::size_t>(sums / fewest_sums, 1, world.threads);
   for (std::size_t k = 0; k < shares; ++k)
-    shares_.emplace_back(k * blocks / shares * particles_in_block,
-                         std::min((k + 1) * blocks / shares * particles_in_block, particles));
+    shares_.emplace_back(k * sums / shares * particles_in_sum,
+                         std::min((k + 1) * sums / shares * particles_in_sum, particles));
 }
 
 void BatchedPaperStepper::advance(World& world, long steps) {

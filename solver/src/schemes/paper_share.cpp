@@ -8,6 +8,9 @@ namespace crossdem {
 namespace {
 
 constexpr double nowhere = 1e9;  // [m]
+/// Particles in a block: with their contacts they are read twice in a step, and stay near the processor in between.
+constexpr std::size_t particles_in_block = 256;
+static_assert(particles_in_sum % particles_in_block == 0 && particles_in_block % batch::width == 0);
 
 std::size_t whole(std::size_t count) { return (count + batch::width - 1) / batch::width; }
 
@@ -17,6 +20,7 @@ void PaperShare::take(const World& w, PaperContacts& contacts) {
   const Particles& p = w.particles;
   groups_.assign(whole(end_ - begin_), {});
   discs_.assign(groups_.size() * batch::width, {});
+  loads_.assign(discs_.size(), {});
   for (std::size_t i = begin_; i < end_; ++i) {
     const std::size_t at = i - begin_;
     const std::size_t k = at % batch::width;
@@ -26,13 +30,13 @@ void PaperShare::take(const World& w, PaperContacts& contacts) {
                   .displacement_y = p.displacement[i].y(),
                   .roll = p.radius[i] * p.rotation[i],
                   .radius = p.radius[i]};
+    loads_[at].work = w.contact_work[i];
     batch::Group& group = groups_[at / batch::width];
     group.velocity_x[k] = p.velocity[i].x();
     group.velocity_y[k] = p.velocity[i].y();
     group.spin[k] = p.spin[i];
     group.rotation[k] = p.rotation[i];
     group.angle[k] = p.angle[i];
-    group.work[k] = w.contact_work[i];
     group.push[k] = w.dt / p.mass[i];
     group.turn[k] = p.radius[i] * (w.dt / p.inertia[i]);
   }
@@ -88,8 +92,7 @@ void PaperShare::take_list(PaperContacts& contacts) {
                        .end = end - begin_,
                        .first_batch = first_batch,
                        .batches = pairs_.size() - first_batch,
-                       .on_surfaces = {first_on_surface, on_surface},
-                       .totals = {}});
+                       .on_surfaces = {first_on_surface, on_surface}});
   }
 }
 
@@ -105,7 +108,7 @@ void PaperShare::give_back(World& w) const {
     p.spin[i] = group.spin[k];
     p.rotation[i] = group.rotation[k];
     p.angle[i] = group.angle[k];
-    w.contact_work[i] = group.work[k];
+    w.contact_work[i] = loads_[i - begin_].work;
   }
 }
 
@@ -147,11 +150,12 @@ void PaperShare::copy_neighbours(const std::vector<PaperShare>& all) {
 
 void PaperShare::step(const World& w) {
   farthest_squared_ = 0.0;
-  for (Block& block : blocks_) {
+  sums_.assign((end_ - begin_ + particles_in_sum - 1) / particles_in_sum, {});
+  for (const Block& block : blocks_) {
     batch::add_pair_forces({pairs_.data() + block.first_batch, block.batches}, discs_.data(), loads_.data(),
                            w.particle_particle, w.dt);
-    block.totals.clear();
-    for (PaperContacts::OnSurface& contact : block.on_surfaces) surface_load(w, contact, block.totals);
+    for (PaperContacts::OnSurface& contact : block.on_surfaces)
+      surface_load(w, contact, sums_[block.begin / particles_in_sum]);
     const double moved_squared =
         batch::move(block.end - block.begin, &groups_[block.begin / batch::width], &discs_[block.begin],
                     &loads_[block.begin], w.gravity, w.dt);

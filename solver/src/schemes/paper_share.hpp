@@ -14,7 +14,7 @@ namespace crossdem {
 /// however many shares there are.
 class PaperShare {
  public:
-  /// [begin, end) of the particles; `begin` is a multiple of particles_in_block.
+  /// [begin, end) of the particles; `begin` is a multiple of particles_in_sum.
   PaperShare(std::size_t begin, std::size_t end) : begin_(begin), end_(end) {}
 
   /// Takes over the particles and the list.
@@ -35,9 +35,9 @@ class PaperShare {
 
   /// [m^2], largest of a particle's way since it was listed.
   [[nodiscard]] double farthest_squared() const { return farthest_squared_; }
-  /// Adds what the surfaces did in the last step, block by block.
+  /// Adds what the surfaces did in the last step, in the order of the particles.
   void add_to(SurfaceTotals& totals) const {
-    for (const Block& block : blocks_) totals += block.totals;
+    for (const SurfaceTotals& sum : sums_) totals += sum;
   }
 
  private:
@@ -49,7 +49,6 @@ class PaperShare {
     std::size_t first_batch;  // in pairs_
     std::size_t batches;
     std::span<PaperContacts::OnSurface> on_surfaces;
-    SurfaceTotals totals;  // of the last step
   };
 
   [[nodiscard]] bool owns(std::uint32_t i) const { return i >= begin_ && i < end_; }
@@ -64,6 +63,7 @@ class PaperShare {
   std::vector<batch::Group> groups_;
   std::vector<batch::Pairs> pairs_;
   std::vector<Block> blocks_;
+  std::vector<SurfaceTotals> sums_;        // of the last step
   std::vector<std::uint32_t> neighbours_;  // that others move; sorted
   double farthest_squared_ = 0.0;          // [m^2]
 };
