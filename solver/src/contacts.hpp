@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "list_skin.hpp"
 #include "neighbours.hpp"
 #include "surfaces.hpp"
 
@@ -27,13 +28,6 @@ struct SurfaceContact {
   [[nodiscard]] ParticlePair key() const { return {i, static_cast<std::uint32_t>(surface)}; }
 };
 
-/// [m] Neighbours within this share of the smallest diameter are listed: few pairs are looked at in vain, and a list
-/// still lasts a hundred steps in a bed that creeps.
-inline double list_skin(const Particles& particles) {
-  constexpr double share_of_diameter = 0.05;
-  return share_of_diameter * 2 * *std::min_element(particles.radius.begin(), particles.radius.end());
-}
-
 /// Whether particle and surface are closer than `gap` [m].
 inline bool closer_than(double gap, const Particles& particles, const Surfaces& surfaces, std::uint32_t i,
                         Surface surface) {
@@ -49,8 +43,7 @@ class Contacts {
   using Pair = PairContact<PairMemory>;
   using OnSurface = SurfaceContact<SurfaceMemory>;
 
-  /// `skin` [m]: how far surfaces may be apart and still be in the list.
-  Contacts(MemoryOwner owner, double skin) : owner_(owner), skin_(skin), width_(widths_of_skin * skin) {}
+  Contacts(MemoryOwner owner, const ListSkin& skin) : owner_(owner), skin_(skin) {}
 
   /// True when something has moved so far that the list could miss a contact.
   [[nodiscard]] bool outdated(const Particles& particles, const Surfaces& surfaces) const {
@@ -61,7 +54,7 @@ class Contacts {
   /// The same; `moved` [m]: how far the farthest particle is from where it was listed.
   [[nodiscard]] bool outdated(double moved, const Surfaces& surfaces) const {
     const double bar_moved = surfaces.bar ? surfaces.bar->travel() - bar_listed_at_ : 0.0;
-    return moved + std::max(moved, bar_moved) > skin_;
+    return moved + std::max(moved, bar_moved) > skin_.now();
   }
 
   /// True when the list cannot be made of the candidates any more: the next rebuild() looks at all particles again.
@@ -69,22 +62,25 @@ class Contacts {
     if (searched_at_.size() != particles.count()) return true;
     const double moved = farthest(particles, searched_at_);
     const double bar_moved = surfaces.bar ? surfaces.bar->travel() - bar_searched_at_ : 0.0;
-    return skin_ + moved + std::max(moved, bar_moved) > width_;
+    return skin_.now() + moved + std::max(moved, bar_moved) > width_;
   }
 
-  /// Makes the list anew; contacts that stay in it keep their memory. Positions must be finite if they have strayed.
-  void rebuild(const Particles& particles, const Surfaces& surfaces) {
+  /// Makes the list anew after `steps` of the world; contacts that stay in it keep their memory. Positions must be finite
+  /// if they have strayed.
+  void rebuild(const Particles& particles, const Surfaces& surfaces, long steps = 0) {
+    if (!listed_at_.empty()) skin_.lasted(steps - listed_steps_);
+    listed_steps_ = steps;
     if (strayed(particles, surfaces)) search(particles, surfaces);
     std::vector<Pair> pairs;
     pairs.reserve(pairs_.size());
     for (const ParticlePair& pair : candidates_)
-      if (closer_than(skin_, particles, pair)) pairs.push_back({pair.i, pair.j, {}});
+      if (closer_than(skin_.now(), particles, pair)) pairs.push_back({pair.i, pair.j, {}});
     keep_memories(pairs_, pairs);
     pairs_ = std::move(pairs);
 
     std::vector<OnSurface> on_surfaces;
     for (const OnSurface& candidate : surface_candidates_)
-      if (closer_than(skin_, particles, surfaces, candidate.i, candidate.surface)) on_surfaces.push_back(candidate);
+      if (closer_than(skin_.now(), particles, surfaces, candidate.i, candidate.surface)) on_surfaces.push_back(candidate);
     keep_memories(on_surfaces_, on_surfaces);
     on_surfaces_ = std::move(on_surfaces);
 
@@ -108,6 +104,7 @@ class Contacts {
   }
 
   void search(const Particles& particles, const Surfaces& surfaces) {
+    width_ = skin_.now() + skin_.reserve();
     candidates_ = close_pairs(particles, width_);
     if (owner_ == MemoryOwner::particle) {
       const std::size_t half = candidates_.size();
@@ -136,15 +133,14 @@ class Contacts {
     }
   }
 
-  static constexpr double widths_of_skin = 7.0;  // wide enough that a search serves some ten lists
-
   MemoryOwner owner_;
-  double skin_;   // [m]
-  double width_;  // [m], of the gaps among the candidates
+  ListSkin skin_;
   std::vector<Pair> pairs_;             // sorted by i, then j
   std::vector<OnSurface> on_surfaces_;  // sorted by i, then surface
   std::vector<Vector2> listed_at_;      // positions when the list was made
   double bar_listed_at_ = 0.0;          // [m], the bar's travel then
+  long listed_steps_ = 0;               // of the world, then
+  double width_ = 0.0;                  // [m], of the gaps among the candidates
   std::vector<ParticlePair> candidates_;       // sorted as the pairs: all that come near while particles have not strayed
   std::vector<OnSurface> surface_candidates_;  // sorted as those in the list; their memories mean nothing
   std::vector<Vector2> searched_at_;           // positions when the candidates were found

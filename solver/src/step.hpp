@@ -129,7 +129,7 @@ class Step {
     if (w_.surfaces.bar) w_.surfaces.bar->advance(w_.dt);
     if (contacts_.outdated(p_, w_.surfaces)) {
       w_.check();
-      contacts_.rebuild(p_, w_.surfaces);
+      contacts_.rebuild(p_, w_.surfaces, w_.steps);
     }
     w_.clear_loads();
   }

@@ -28,7 +28,7 @@ template <ConventionalScheme Scheme>
 class ConventionalStepper final : public Stepper {
  public:
   ConventionalStepper(const Case& setup, World& world)
-      : scheme_(setup, world), contacts_(MemoryOwner::pair, list_skin(world.particles)) {
+      : scheme_(setup, world), contacts_(MemoryOwner::pair, ListSkin(world.particles)) {
     contacts_.rebuild(world.particles, world.surfaces);
     evaluate(world, Scheme::first_evaluation_advances);
     world.contact_work.assign(world.particles.count(), 0.0);  // no time has passed
@@ -39,7 +39,7 @@ class ConventionalStepper final : public Stepper {
       scheme_.move(world);
       if (contacts_.outdated(world.particles, world.surfaces)) {
         world.check();
-        contacts_.rebuild(world.particles, world.surfaces);
+        contacts_.rebuild(world.particles, world.surfaces, world.steps);
       }
       evaluate(world, true);
       scheme_.finish(world);

@@ -24,7 +24,7 @@ class PaperStepper final : public Stepper {
   PaperStepper(const Scheme& scheme, const Readings& readings, World& world)
       : scheme_(scheme),
         in_turn_(readings.update_order == UpdateOrder::in_turn),
-        contacts_(in_turn_ ? MemoryOwner::particle : MemoryOwner::pair, list_skin(world.particles)) {
+        contacts_(in_turn_ ? MemoryOwner::particle : MemoryOwner::pair, ListSkin(world.particles)) {
     Particles& p = world.particles;
     if (readings.inertia == Inertia::sphere)
       for (std::size_t i = 0; i < p.count(); ++i) p.inertia[i] = 0.4 * p.mass[i] * p.radius[i] * p.radius[i];

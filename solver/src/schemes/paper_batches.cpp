@@ -1,9 +1,10 @@
 #include "paper_batches.hpp"
 
 #include <algorithm>
-#include <barrier>
 #include <exception>
 #include <thread>
+
+#include "../spin_barrier.hpp"
 
 namespace crossdem {
 namespace {
@@ -23,7 +24,7 @@ BatchedPaperStepper::BatchedPaperStepper(const Readings& readings, World& world)
 }
 
 void BatchedPaperStepper::advance(World& world, long steps) {
-  std::barrier barrier(static_cast<std::ptrdiff_t>(shares_.size()));
+  SpinBarrier barrier(shares_.size());
   const auto meet = [&] {
     if (shares_.size() > 1) barrier.arrive_and_wait();
   };
@@ -72,7 +73,7 @@ void BatchedPaperStepper::begin_step(World& w) {
     for (const PaperShare& share : shares_) share.give_back(w);
     w.check();
   }
-  contacts().rebuild(w.particles, w.surfaces);
+  contacts().rebuild(w.particles, w.surfaces, w.steps);
   for (PaperShare& share : shares_) share.take_list(contacts());
 }
 
