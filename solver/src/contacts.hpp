@@ -72,7 +72,7 @@ class Contacts {
     listed_steps_ = steps;
     if (strayed(particles, surfaces)) search(particles, surfaces);
     std::vector<Pair> pairs;
-    pairs.reserve(pairs_.size());
+    pairs.reserve(pairs_.size() + pairs_.size() / 8);
     for (const ParticlePair& pair : candidates_)
       if (closer_than(skin_.now(), particles, pair)) pairs.push_back({pair.i, pair.j, {}});
     keep_memories(pairs_, pairs);

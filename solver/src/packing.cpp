@@ -56,6 +56,7 @@ Particles jittered_lattice(const Case& setup, std::uint64_t seed) {
   const std::size_t low = radii.size() / columns;
   const std::size_t in_high_columns = radii.size() % columns * (low + 1);
   Particles particles;
+  particles.reserve(radii.size());
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const bool high = i < in_high_columns;
     const std::size_t column = high ? i / (low + 1) : radii.size() % columns + (i - in_high_columns) / low;
@@ -184,6 +185,7 @@ double touching_height(const BarGeometry& bar, const std::vector<double>& radius
 
 Particles particles_of(const Packing& packing, const Case& setup) {
   Particles particles;
+  particles.reserve(packing.radius.size());
   for (std::size_t i = 0; i < packing.radius.size(); ++i) {
     particles.add(packing.radius[i], setup.disc_mass(packing.radius[i]), packing.position[i], packing.velocity[i]);
     particles.spin[i] = packing.spin[i];

@@ -2,6 +2,11 @@
 
 namespace crossdem {
 
+void Particles::reserve(std::size_t count) {
+  for (auto* of_each : {&radius, &mass, &inertia, &angle, &spin, &rotation}) of_each->reserve(count);
+  for (auto* of_each : {&position, &velocity, &displacement}) of_each->reserve(count);
+}
+
 void Particles::add(double disc_radius, double disc_mass, const Vector2& at, const Vector2& moving) {
   radius.push_back(disc_radius);
   mass.push_back(disc_mass);

@@ -21,6 +21,7 @@ struct Particles {
   std::vector<double> rotation;       // [rad], of the last step
 
   [[nodiscard]] std::size_t count() const { return radius.size(); }
+  void reserve(std::size_t count);
   void add(double disc_radius, double disc_mass, const Vector2& at, const Vector2& moving);
 };
 

@@ -15,6 +15,7 @@ constexpr std::size_t fewest_sums = 4;   // in a share: with less to do, threads
 
 BatchedPaperStepper::BatchedPaperStepper(const Readings& readings, World& world)
     : plain_(PaperScheme{}, readings, world) {
+  world.loads = {};  // the shares have their own
   const std::size_t particles = world.particles.count();
   const std::size_t sums = (particles + particles_in_sum - 1) / particles_in_sum;
   const std::size_t shares = std::clamp<std::size_t>(sums / fewest_sums, 1, world.threads);
@@ -34,15 +35,24 @@ void BatchedPaperStepper::advance(World& world, long steps) {
     share.take(world, contacts());
     meet();
     for (long n = 0; n < steps; ++n) {
-      if (leads) {
-        try {
-          begin_step(world);
-        } catch (...) {
-          failure = std::current_exception();
-        }
-      }
+      if (leads) begin_step(world);
       meet();
-      if (failure) return;
+      if (outdated_) {
+        share.give_back(world);
+        share.give_back_list(contacts());
+        meet();
+        if (leads) {
+          try {
+            make_list(world);
+          } catch (...) {
+            failure = std::current_exception();
+          }
+        }
+        meet();
+        if (failure) return;
+        share.take_list(contacts());
+        meet();
+      }
       share.copy_neighbours(shares_);
       meet();
       share.step(world);
@@ -50,7 +60,7 @@ void BatchedPaperStepper::advance(World& world, long steps) {
       if (leads) end_step(world);
     }
     share.give_back(world);
-    share.give_back_memories(contacts());
+    share.give_back_list(contacts());
   };
   std::vector<std::jthread> helpers;
   for (auto share = shares_.begin() + 1; share != shares_.end(); ++share)
@@ -64,17 +74,12 @@ void BatchedPaperStepper::begin_step(World& w) {
   if (w.surfaces.bar) w.surfaces.bar->advance(w.dt);
   double farthest_squared = 0.0;
   for (const PaperShare& share : shares_) farthest_squared = std::max(farthest_squared, share.farthest_squared());
-  if (!contacts().outdated(std::sqrt(farthest_squared), w.surfaces)) return;
-  for (const PaperShare& share : shares_) {
-    share.give_back_positions(w.particles);
-    share.give_back_memories(contacts());
-  }
-  if (contacts().strayed(w.particles, w.surfaces)) {
-    for (const PaperShare& share : shares_) share.give_back(w);
-    w.check();
-  }
+  outdated_ = contacts().outdated(std::sqrt(farthest_squared), w.surfaces);
+}
+
+void BatchedPaperStepper::make_list(const World& w) {
+  if (contacts().strayed(w.particles, w.surfaces)) w.check();
   contacts().rebuild(w.particles, w.surfaces, w.steps);
-  for (PaperShare& share : shares_) share.take_list(contacts());
 }
 
 void BatchedPaperStepper::end_step(World& w) {

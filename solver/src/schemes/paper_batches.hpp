@@ -19,14 +19,16 @@ class BatchedPaperStepper final : public Stepper {
   [[nodiscard]] double spring_energy(const World& world) const override { return plain_.spring_energy(world); }
 
  private:
-  /// The bar, and the list where it is outdated.
+  /// Moves the bar, and looks whether the list is outdated.
   void begin_step(World& world);
+  void make_list(const World& world);
   void end_step(World& world);
 
   PaperContacts& contacts() { return plain_.contacts(); }
 
   PaperStepper<PaperScheme> plain_;
   std::vector<PaperShare> shares_;
+  bool outdated_ = false;  // the list
 };
 
 }  // namespace crossdem

@@ -51,8 +51,11 @@ void PaperShare::take_list(PaperContacts& contacts) {
   }
 
   neighbours_.clear();
-  for (const PaperContacts::Pair& pair : contacts.pairs())
+  std::size_t own_pairs = 0;
+  for (const PaperContacts::Pair& pair : contacts.pairs()) {
+    if (owns(pair.i) || owns(pair.j)) ++own_pairs;
     if (owns(pair.i) != owns(pair.j)) neighbours_.push_back(owns(pair.i) ? pair.j : pair.i);
+  }
   std::sort(neighbours_.begin(), neighbours_.end());
   neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
   const std::size_t lone = groups_.size() * batch::width;
@@ -67,6 +70,7 @@ void PaperShare::take_list(PaperContacts& contacts) {
   none.normal_spring.fill(batch::not_touching);
   blocks_.clear();
   pairs_.clear();
+  pairs_.reserve(whole(own_pairs) + whole(end_ - begin_) / (particles_in_block / batch::width) + 1);
   auto pair = contacts.pairs().cbegin();
   auto on_surface = std::partition_point(contacts.on_surfaces().begin(), contacts.on_surfaces().end(),
                                          [&](const auto& contact) { return contact.i < begin_; });
@@ -98,11 +102,11 @@ void PaperShare::take_list(PaperContacts& contacts) {
 
 void PaperShare::give_back(World& w) const {
   Particles& p = w.particles;
-  give_back_positions(p);
   for (std::size_t i = begin_; i < end_; ++i) {
     const batch::Disc& disc = discs_[i - begin_];
     const batch::Group& group = groups_[(i - begin_) / batch::width];
     const std::size_t k = (i - begin_) % batch::width;
+    p.position[i] = {disc.x, disc.y};
     p.displacement[i] = {disc.displacement_x, disc.displacement_y};
     p.velocity[i] = {group.velocity_x[k], group.velocity_y[k]};
     p.spin[i] = group.spin[k];
@@ -112,11 +116,7 @@ void PaperShare::give_back(World& w) const {
   }
 }
 
-void PaperShare::give_back_positions(Particles& p) const {
-  for (std::size_t i = begin_; i < end_; ++i) p.position[i] = {discs_[i - begin_].x, discs_[i - begin_].y};
-}
-
-void PaperShare::give_back_memories(PaperContacts& contacts) const {
+void PaperShare::give_back_list(PaperContacts& contacts) {
   auto pair = contacts.pairs().begin();
   for (const Block& block : blocks_) {
     std::size_t n = block.first_batch * batch::width;
@@ -129,6 +129,7 @@ void PaperShare::give_back_memories(PaperContacts& contacts) const {
       pair->memory = touching ? ContactSpring{pairs.normal_spring[k], pairs.shear_spring[k], true} : ContactSpring{};
     }
   }
+  pairs_ = {};  // room for the next list of the contacts
 }
 
 std::uint32_t PaperShare::local(std::uint32_t i) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../batch/kernels.hpp"
+#include "../huge_pages.hpp"
 #include "../step.hpp"
 
 namespace crossdem {
@@ -21,11 +22,10 @@ class PaperShare {
   void take(const World& world, PaperContacts& contacts);
   /// Takes over the list where only that is new.
   void take_list(PaperContacts& contacts);
-  /// Writes back what take() has read, as it is now. The list's memories, and all of the particles or just where they
-  /// are.
+  /// Writes the particles back.
   void give_back(World& world) const;
-  void give_back_positions(Particles& particles) const;
-  void give_back_memories(PaperContacts& contacts) const;
+  /// Writes the memories of the list back, and does without it until the next take_list().
+  void give_back_list(PaperContacts& contacts);
 
   /// Before a step: brings the copies of what `all` the shares move up to date. Not while any of them steps.
   void copy_neighbours(const std::vector<PaperShare>& all);
@@ -58,10 +58,10 @@ class PaperShare {
 
   std::size_t begin_;
   std::size_t end_;
-  std::vector<batch::Disc> discs_;  // of whole groups, of two discs that no other is near, and of copies
-  std::vector<batch::Load> loads_;
-  std::vector<batch::Group> groups_;
-  std::vector<batch::Pairs> pairs_;
+  LargeArray<batch::Disc> discs_;  // of whole groups, of two discs that no other is near, and of copies
+  LargeArray<batch::Load> loads_;
+  LargeArray<batch::Group> groups_;
+  LargeArray<batch::Pairs> pairs_;
   std::vector<Block> blocks_;
   std::vector<SurfaceTotals> sums_;        // of the last step
   std::vector<std::uint32_t> neighbours_;  // that others move; sorted
