@@ -65,8 +65,8 @@ class Contacts {
     return skin_.now() + moved + std::max(moved, bar_moved) > width_;
   }
 
-  /// Makes the list anew after `steps` of the world; contacts that stay in it keep their memory. Positions must be finite
-  /// if they have strayed.
+  /// Makes the list anew after `steps` of the world; contacts that stay in it keep their memory. Positions must be
+  /// finite if they have strayed.
   void rebuild(const Particles& particles, const Surfaces& surfaces, long steps = 0) {
     if (!listed_at_.empty()) skin_.lasted(steps - listed_steps_);
     listed_steps_ = steps;
@@ -80,7 +80,8 @@ class Contacts {
 
     std::vector<OnSurface> on_surfaces;
     for (const OnSurface& candidate : surface_candidates_)
-      if (closer_than(skin_.now(), particles, surfaces, candidate.i, candidate.surface)) on_surfaces.push_back(candidate);
+      if (closer_than(skin_.now(), particles, surfaces, candidate.i, candidate.surface))
+        on_surfaces.push_back(candidate);
     keep_memories(on_surfaces_, on_surfaces);
     on_surfaces_ = std::move(on_surfaces);
 
@@ -135,13 +136,13 @@ class Contacts {
 
   MemoryOwner owner_;
   ListSkin skin_;
-  std::vector<Pair> pairs_;             // sorted by i, then j
-  std::vector<OnSurface> on_surfaces_;  // sorted by i, then surface
-  std::vector<Vector2> listed_at_;      // positions when the list was made
-  double bar_listed_at_ = 0.0;          // [m], the bar's travel then
-  long listed_steps_ = 0;               // of the world, then
-  double width_ = 0.0;                  // [m], of the gaps among the candidates
-  std::vector<ParticlePair> candidates_;       // sorted as the pairs: all that come near while particles have not strayed
+  std::vector<Pair> pairs_;               // sorted by i, then j
+  std::vector<OnSurface> on_surfaces_;    // sorted by i, then surface
+  std::vector<Vector2> listed_at_;        // positions when the list was made
+  double bar_listed_at_ = 0.0;            // [m], the bar's travel then
+  long listed_steps_ = 0;                 // of the world, then
+  double width_ = 0.0;                    // [m], of the gaps among the candidates
+  std::vector<ParticlePair> candidates_;  // sorted as the pairs: all that come near while particles have not strayed
   std::vector<OnSurface> surface_candidates_;  // sorted as those in the list; their memories mean nothing
   std::vector<Vector2> searched_at_;           // positions when the candidates were found
   double bar_searched_at_ = 0.0;               // [m], the bar's travel then

@@ -22,12 +22,12 @@ struct HugePages {
   [[nodiscard]] static T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < page) return static_cast<T*>(::operator new(bytes, small_alignment));
-    void* array = ::operator new(bytes, std::align_val_t{page});
+    void* array = ::operator new (bytes, std::align_val_t{page});
     (void)madvise(array, bytes, MADV_HUGEPAGE);  // a wish: refused, the array is slower and no less good
     return static_cast<T*>(array);
   }
   static void deallocate(T* array, std::size_t count) {
-    ::operator delete(array, count * sizeof(T) < page ? small_alignment : std::align_val_t{page});
+    ::operator delete (array, count * sizeof(T) < page ? small_alignment : std::align_val_t{page});
   }
 
   bool operator==(const HugePages&) const { return true; }

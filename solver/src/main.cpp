@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "batch/kernels.hpp"
 #include "crossdem/measure.hpp"
 #include "crossdem/run.hpp"
 #include "crossdem/simulation.hpp"
@@ -109,9 +110,17 @@ int command_line(int argc, char** argv) {
   measurer->add_option("--packing", given.packing_file, "packing.csv, with packing.json beside it")->required();
   measurer->add_option("--steps", given.steps, "only so many, from the first on")
       ->check(CLI::Range(0L, std::numeric_limits<long>::max()));
-  for (CLI::App* threaded : {packer, runner, measurer})
-    threaded->add_option("--threads", given.threads, "at most so many, where the bed is large; the results are the same")
+  const std::vector<std::string_view> here = crossdem::batch::instruction_sets();
+  const std::vector<std::string> instruction_sets(here.begin(), here.end());
+  for (CLI::App* stepping : {packer, runner, measurer}) {
+    stepping
+        ->add_option("--threads", given.threads, "at most so many, where the bed is large; the results are the same")
         ->check(CLI::Range(1, 1024));
+    stepping
+        ->add_option_function<std::string>("--instructions", crossdem::batch::use_instruction_set,
+                                           "not the widest of this machine but these; the results are the same")
+        ->check(CLI::IsMember(instruction_sets));
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -64,7 +64,8 @@ std::vector<ParticlePair> close_pairs(const Particles& particles, double gap) {
   if (particles.count() < 2) return pairs;
   const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
   const CellGrid grid(particles, 2 * largest + gap);
-  pairs.reserve(4 * particles.count());  // more than discs of like size have at a time in two dimensions, each counted once
+  pairs.reserve(4 *
+                particles.count());  // more than discs of like size have at a time in two dimensions, each counted once
   std::vector<std::uint32_t> partners;
   for (std::uint32_t i = 0; i < particles.count(); ++i) {
     partners.clear();

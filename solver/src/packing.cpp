@@ -51,8 +51,8 @@ Particles jittered_lattice(const Case& setup, std::uint64_t seed) {
   const std::size_t columns = 1 + static_cast<std::size_t>(free_width / recipe.lattice_spacing);
   const double left = margin + 0.5 * (free_width - static_cast<double>(columns - 1) * recipe.lattice_spacing);
 
-  // Numbered column by column, so that neighbours in a bed are neighbours in memory however wide it is; where the top row
-  // is not full, its columns are the first.
+  // Numbered column by column, so that neighbours in a bed are neighbours in memory however wide it is; where the top
+  // row is not full, its columns are the first.
   const std::size_t low = radii.size() / columns;
   const std::size_t in_high_columns = radii.size() % columns * (low + 1);
   Particles particles;

@@ -7,8 +7,8 @@
 
 namespace crossdem {
 
-/// Waits by looking again and again: steps of a large bed are thousands of times shorter than a thread takes to wake up.
-/// A thread that has looked for long lets others have its processor, should there be fewer of them than threads.
+/// Waits by looking again and again: steps of a large bed are thousands of times shorter than a thread takes to wake
+/// up. A thread that has looked for long lets others have its processor, should there be fewer of them than threads.
 class SpinBarrier {
  public:
   explicit SpinBarrier(std::size_t threads) : threads_(threads), missing_(threads) {}

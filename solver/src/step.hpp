@@ -156,12 +156,11 @@ class Step {
     f.lever_j = lever(j, overlap);
     const double arm_i = f.lever_i * p_.radius[i];
     const double arm_j = f.lever_j * p_.radius[j];
-    const RelativeMotion moved(p_.displacement[i] - p_.displacement[j],
-                               arm_i * p_.rotation[i] + arm_j * p_.rotation[j], f.normal);
+    const RelativeMotion moved(p_.displacement[i] - p_.displacement[j], arm_i * p_.rotation[i] + arm_j * p_.rotation[j],
+                               f.normal);
     RelativeDisplacement u{moved.normal, moved.shear, overlap, moved.normal, moved.shear};
     if (scheme_.law.readings.dashpot_velocity == DashpotVelocity::true_velocity) {
-      const RelativeMotion velocity(p_.velocity[i] - p_.velocity[j], arm_i * p_.spin[i] + arm_j * p_.spin[j],
-                                    f.normal);
+      const RelativeMotion velocity(p_.velocity[i] - p_.velocity[j], arm_i * p_.spin[i] + arm_j * p_.spin[j], f.normal);
       u.damped_normal = velocity.normal * w_.dt;
       u.damped_shear = velocity.shear * w_.dt;
     }

@@ -95,6 +95,20 @@ TEST_P(Batches, GiveTheBitsOfPlainStepsEqs1To24) {
 INSTANTIATE_TEST_SUITE_P(OnThisMachine, Batches, testing::ValuesIn(batch::instruction_sets()),
                          [](const auto& of) { return std::string(of.param); });
 
+TEST(Threads, GiveTheBitsOfOne) {
+  const Particles many = gas(20000);  // of which each of four threads has its share
+  const Start start{"gas", small_case(), many, std::nullopt, 60};
+  const auto on = [&](std::size_t threads) {
+    return after(start, [&](World& w) {
+      w.threads = threads;
+      return std::make_unique<BatchedPaperStepper>(Readings{}, w);
+    });
+  };
+  const std::vector<double> plain =
+      after(start, [&](World& w) { return std::make_unique<PaperStepper<PaperScheme>>(PaperScheme{}, Readings{}, w); });
+  for (const std::size_t threads : {1, 2, 3, 4}) EXPECT_EQ(plain, on(threads)) << threads;
+}
+
 TEST(InstructionSets, RefuseWhatIsNotHere) {
   EXPECT_THROW(batch::use_instruction_set("AVX-4096"), std::invalid_argument);
   EXPECT_FALSE(batch::instruction_sets().empty());

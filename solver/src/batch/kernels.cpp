@@ -170,8 +170,7 @@ struct Approach {
 HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
   Approach a;
   a.between = between(i, j, discs);
-  a.distance_squared =
-      hn::Add(hn::Mul(a.between.x, a.between.x), hn::Mul(a.between.y, a.between.y));
+  a.distance_squared = hn::Add(hn::Mul(a.between.x, a.between.x), hn::Mul(a.between.y, a.between.y));
   a.inverse = hn::Div(hn::Set(lanes, 1.0), hn::Sqrt(a.distance_squared));
   return a;
 }
@@ -213,15 +212,13 @@ HWY_INLINE Forces forces(const Approach& a, const ContactParameters& p, double d
   e_s = hn::Add(e_s, hn::Mul(hn::Set(lanes, p.shear_stiffness), du_s));
   const Vector slip_force = hn::Mul(hn::Set(lanes, p.friction), e_n);
   const Mask slips = hn::Gt(hn::Abs(e_s), slip_force);
-  const Vector slipping = hn::CopySign(slip_force, e_s);  // Eq. (9)
-  const Vector f_n = hn::IfThenElseZero(acts, hn::Add(e_n, dashpot_n));  // Eq. (6)
-  const Vector f_s =
-      hn::IfThenElseZero(acts, hn::IfThenElse(slips, slipping, hn::Add(e_s, dashpot_s)));  // Eq. (7)
+  const Vector slipping = hn::CopySign(slip_force, e_s);                                                  // Eq. (9)
+  const Vector f_n = hn::IfThenElseZero(acts, hn::Add(e_n, dashpot_n));                                   // Eq. (6)
+  const Vector f_s = hn::IfThenElseZero(acts, hn::IfThenElse(slips, slipping, hn::Add(e_s, dashpot_s)));  // Eq. (7)
   hn::Store(hn::IfThenElse(acts, e_n, hn::Set(lanes, not_touching)), lanes, normal_spring);
   hn::Store(hn::IfThenElseZero(acts, hn::IfThenElse(slips, slipping, e_s)), lanes, shear_spring);
   return {hn::Sub(hn::Mul(f_n, normal_x), hn::Mul(f_s, normal_y)),
-          hn::Add(hn::Mul(f_n, normal_y), hn::Mul(f_s, normal_x)), f_s,
-          hn::Add(hn::Mul(f_n, u_n), hn::Mul(f_s, u_s))};
+          hn::Add(hn::Mul(f_n, normal_y), hn::Mul(f_s, normal_x)), f_s, hn::Add(hn::Mul(f_n, u_n), hn::Mul(f_s, u_s))};
 }
 
 /// Pair after pair: i receives the opposite of j, and the work.
@@ -259,8 +256,9 @@ HWY_INLINE void add(Forces f, const std::uint32_t* i, const std::uint32_t* j, Lo
 #endif
 }
 
-/// A turn of the loop looks at one batch, takes the forces of the batch before it and adds those of the one before that:
-/// none of the three waits for another, where one batch after the other would wait for each root, division and sum.
+/// A turn of the loop looks at one batch, takes the forces of the batch before it and adds those of the one before
+/// that: none of the three waits for another, where one batch after the other would wait for each root, division and
+/// sum.
 void AddPairForces(std::span<Pairs> batches, const Disc* discs, Load* loads, const ContactParameters& parameters,
                    double dt) {
   constexpr std::size_t parts = width / count;  // of a batch, each a turn
@@ -332,11 +330,11 @@ double Move(std::size_t particles, Group* groups, Disc* discs, Load* loads, doub
     load_columns([&](std::size_t k) HWY_ATTR { return &load[k].force_x; }, force_x, force_y, rim, work);
     forget_forces(load);
     const Vector push = of(group.push);
-    const Vector vx = update(group.velocity_x, hn::Mul(force_x, push));                 // Eqs. (13), (16)
-    const Vector vy = update(group.velocity_y, hn::Sub(hn::Mul(force_y, push), fall));  // Eqs. (14), (17)
-    const Vector spin = update(group.spin, hn::Neg(hn::Mul(rim, of(group.turn))));      // Eqs. (12), (15), (18)
-    dx = hn::Mul(half, hn::Add(dx, hn::Mul(vx, dt)));                                   // Eq. (19)
-    dy = hn::Mul(half, hn::Add(dy, hn::Mul(vy, dt)));                                   // Eq. (20)
+    const Vector vx = update(group.velocity_x, hn::Mul(force_x, push));                     // Eqs. (13), (16)
+    const Vector vy = update(group.velocity_y, hn::Sub(hn::Mul(force_y, push), fall));      // Eqs. (14), (17)
+    const Vector spin = update(group.spin, hn::Neg(hn::Mul(rim, of(group.turn))));          // Eqs. (12), (15), (18)
+    dx = hn::Mul(half, hn::Add(dx, hn::Mul(vx, dt)));                                       // Eq. (19)
+    dy = hn::Mul(half, hn::Add(dy, hn::Mul(vy, dt)));                                       // Eq. (20)
     const Vector rotation = hn::Mul(half, hn::Add(of(group.rotation), hn::Mul(spin, dt)));  // Eq. (21)
     hn::Store(rotation, lanes, group.rotation.data() + begin);
     x = hn::Add(x, dx);             // Eq. (22)

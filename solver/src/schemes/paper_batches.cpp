@@ -9,7 +9,7 @@
 namespace crossdem {
 namespace {
 
-constexpr std::size_t fewest_sums = 4;   // in a share: with less to do, threads wait for one another too much
+constexpr std::size_t fewest_sums = 4;  // in a share: with less to do, threads wait for one another too much
 
 }  // namespace
 

@@ -157,9 +157,8 @@ void PaperShare::step(const World& w) {
                            w.particle_particle, w.dt);
     for (PaperContacts::OnSurface& contact : block.on_surfaces)
       surface_load(w, contact, sums_[block.begin / particles_in_sum]);
-    const double moved_squared =
-        batch::move(block.end - block.begin, &groups_[block.begin / batch::width], &discs_[block.begin],
-                    &loads_[block.begin], w.gravity, w.dt);
+    const double moved_squared = batch::move(block.end - block.begin, &groups_[block.begin / batch::width],
+                                             &discs_[block.begin], &loads_[block.begin], w.gravity, w.dt);
     farthest_squared_ = std::max(farthest_squared_, moved_squared);
   }
 }

@@ -10,9 +10,9 @@
 
 namespace crossdem {
 
-/// A run of particles in batches, with copies of the neighbours that other shares move. A pair across the edge stands in
-/// both shares: each takes the force, and memory, for itself, so that every particle has its sum in the order of the list
-/// however many shares there are.
+/// A run of particles in batches, with copies of the neighbours that other shares move. A pair across the edge stands
+/// in both shares: each takes the force, and memory, for itself, so that every particle has its sum in the order of the
+/// list however many shares there are.
 class PaperShare {
  public:
   /// [begin, end) of the particles; `begin` is a multiple of particles_in_sum.
