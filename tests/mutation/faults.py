@@ -68,15 +68,13 @@ PARAMETERS = (
     Fault(
         "inertia of a sphere", SCALAR, "state.cpp", "push_back(0.5 * disc", "push_back(0.4 * disc"
     ),
-    _factor(
-        "gravity 9.81", SCALAR, MOTION, "acceleration.y() -= ", "gravity;", "9.81 / 9.80665 * "
-    ),
+    _factor("gravity 9.81", SCALAR, MOTION, "Vector2(0.0, ", "gravity * dt)", "9.81 / 9.80665 * "),
     Fault(
         "gravity without mass",
         SCALAR,
         MOTION,
-        "acceleration.y() -= gravity;",
-        "acceleration.y() -= gravity / p.mass[i];",
+        "Vector2(0.0, gravity * dt)",
+        "Vector2(0.0, gravity * dt / p.mass[i])",
     ),
     _factor("time step +10 %", SCALAR, STEP, ADVANCE, "w_.dt)", "1.1 * "),
     _factor("time step -10 %", SCALAR, STEP, ADVANCE, "w_.dt)", "0.9 * "),
@@ -103,7 +101,7 @@ FORMULAS = (
         LAWS,
         "f.shear = spring.shear = std::copysign(slip_force, spring.shear);",
         "spring.shear = std::copysign(slip_force, spring.shear);\n"
-        "      f.shear = spring.shear + p.shear_damping * u.damped_shear / dt;",
+        "      f.shear = spring.shear + p.shear_damping / dt * u.damped_shear;",
     ),
     Fault(
         "whole step at first contact", LAW, LAWS, "u = share_in_contact(u);", "u.overlap *= 1.0;"
@@ -112,15 +110,15 @@ FORMULAS = (
         "spin of the wrong sign in pairs",
         LAW,
         STEP,
-        "f.arm_i * p_.rotation[i] + f.arm_j * p_.rotation[j]",
-        "f.arm_i * p_.rotation[i] - f.arm_j * p_.rotation[j]",
+        "arm_i * p_.rotation[i] + arm_j * p_.rotation[j]",
+        "arm_i * p_.rotation[i] - arm_j * p_.rotation[j]",
     ),
     Fault(
         "spin of the wrong sign at walls",
         LAW,
         STEP,
-        "displacement(surface), f.arm * disc.rotation",
-        "displacement(surface), -f.arm * disc.rotation",
+        "displacement(surface), arm * disc.rotation",
+        "displacement(surface), -arm * disc.rotation",
     ),
     Fault(
         "torque arm to the contact point",
@@ -133,7 +131,7 @@ FORMULAS = (
         "no moment on the partner",
         LAW,
         STEP,
-        "add(contact.j, f.force, -f.normal, f.arm_j);",
+        "add(contact.j, f.force, -f.normal, f.lever_j);",
         "add(contact.j, f.force, -f.normal, 0.0);",
     ),
     Fault(
@@ -143,9 +141,7 @@ FORMULAS = (
         "const double reach = p_.radius[i] + p_.radius[j];",
         "const double reach = 2 * p_.radius[i];",
     ),
-    Fault(
-        "rotation off", LAW, MOTION, "p.spin[i] += load.moment", "p.spin[i] += 0.0 * load.moment"
-    ),
+    Fault("rotation off", LAW, MOTION, "p.spin[i] -= load.rim", "p.spin[i] -= 0.0 * load.rim"),
     Fault(
         "displacement not averaged",
         LAW,
@@ -180,14 +176,14 @@ MEMORIES = (
 )
 
 LISTS = (
-    _factor("neighbour list never made anew", LIST, CONTACTS, OUTDATED, "skin_;", "1e9 * "),
-    _factor("neighbour list kept too long", LIST, CONTACTS, OUTDATED, "skin_;", "3 * "),
+    _factor("neighbour list never made anew", LIST, CONTACTS, OUTDATED, "skin_.now();", "1e9 * "),
+    _factor("neighbour list kept too long", LIST, CONTACTS, OUTDATED, "skin_.now();", "3 * "),
     Fault(
         "neighbour list blind to the bar",
         LIST,
         CONTACTS,
-        "return moved + std::max(moved, bar_moved) > skin_;",
-        "return moved + moved > skin_ + 0.0 * bar_moved;",
+        "return moved + std::max(moved, bar_moved) > skin_.now();",
+        "return moved + moved > skin_.now() + 0.0 * bar_moved;",
     ),
 )
 
@@ -243,9 +239,9 @@ RECORDS = (
         "bar force without shear",
         RECORD,
         STEP,
-        "w_.totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.arm));",
-        "add(i, f.force, f.normal, f.arm);\n"
-        "    w_.totals.add(w_.surfaces, contact.surface, disc.centre, -f.force.normal * f.normal);",
+        "totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever));",
+        "add(i, f.force, f.normal, f.lever);\n"
+        "    totals.add(w_.surfaces, contact.surface, disc.centre, -f.force.normal * f.normal);",
     ),
     Fault(
         "bar force without its right face",
