@@ -108,6 +108,7 @@ def _check(result) -> dict:
         "p_different": result.p_different,
         "family": result.family,
         "scatter": result.scatter,
+        "scatter_degrees": result.scatter_degrees,
         "alarm": result.alarm,
         "seeds_needed": result.seeds_needed,
         "seeds_to_settle": result.seeds_to_settle,

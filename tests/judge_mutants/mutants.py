@@ -58,7 +58,8 @@ MUTANTS = [
             "[checks[0].on_scale(checks[0].margin) for",
         ),
         ("alarm_without_abs", "abs(self.difference) > self.alarm", "self.difference > self.alarm"),
-        ("alarm_within_the_margin", "return self.margin + ALARM", "return ALARM"),
+        ("alarm_within_the_margin", "return self.margin + errors", "return errors"),
+        ("alarm_of_a_known_scatter", "stdtrit(self.scatter_degrees,", "stdtrit(10**9,"),
         ("alarm_of_one_packing", "math.sqrt(2 / len(self.seeds))", "math.sqrt(2)"),
         (
             "alarm_instead_of_the_interval",
@@ -87,8 +88,15 @@ MUTANTS = [
         ),
         ("margin_without_log", "return math.log(value) if", "return value if"),
         ("over_the_sum", "abs(a.mean() + b.mean()) / 2", "abs(a.mean() + b.mean())"),
-        ("the_wildest_engine", "min(measured)", "max(measured)"),
         ("scatter_over_n_of_an_engine", "values.std(ddof=1)", "values.std(ddof=0)"),
+        ("stated_scatter_for_sure", "STATED_DEGREES = 4", "STATED_DEGREES = 10**9"),
+        ("measured_scatter_forgotten", "for one, known in measured]", "for one, known in []]"),
+        ("wildness_is_an_excuse", "MOST_TIMES_CALMER = 3", "MOST_TIMES_CALMER = 1e9"),
+        (
+            "both_as_calm_as_stated",
+            "max(stated, min(scatter for scatter, _ in measured))",
+            "stated",
+        ),
     ),
     *_of(
         "ensemble.py",
