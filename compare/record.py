@@ -44,6 +44,7 @@ def record(comparison: Comparison) -> dict:
                 "name": comparison.case.name,
                 "title": comparison.case.resolved["title"],
                 "hash": comparison.case.hash,
+                "changes": comparison.case.changes,
             },
             "verdict": vars(verdict) | {"exit_code": int(verdict.exit_code)},
             "engines": comparison.engines,
