@@ -107,8 +107,8 @@ def check_cluster(profile: str | None) -> None:
         )
         if any(line.endswith("UP") for line in ping.stdout.splitlines()):
             return
-        lines = [line for line in (ping.stdout + ping.stderr).splitlines() if line.strip()]
-        why = lines[-1] if lines else "scontrol ping says nothing"
+        said = ping.stdout.split("\n")[:1] if ping.stdout else ping.stderr.splitlines()[-1:]
+        why = "".join(said) or "scontrol ping says nothing"
     except FileNotFoundError:
         why = "there is no scontrol here: apt install slurm-client"
     except subprocess.TimeoutExpired:

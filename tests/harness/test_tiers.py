@@ -71,12 +71,13 @@ def test_the_number_of_jobs_of_a_cluster_is_not_that_of_processes_here(monkeypat
 @pytest.mark.parametrize(
     "ping, told",
     [
-        ("echo 'Slurmctld(primary) at here is DOWN'; exit 1", "at here is DOWN"),
+        ("echo 'Slurmctld(primary) at here is DOWN\n*** RESTORE ***'; exit 1", "here is DOWN"),
+        ("exit 1", "scontrol ping says nothing"),
         ("echo 'scontrol: error: no server' >&2; exit 1", "error: no server"),
         ("exec sleep 60", "no answer after 0 s"),
         (None, "there is no scontrol here"),
     ],
-    ids=["down", "error", "silent", "missing"],
+    ids=["down", "mute", "error", "silent", "missing"],
 )
 def test_a_cluster_that_does_not_answer_is_told_before_anything_runs(
     tmp_path, monkeypatch, capsys, command, ping, told
