@@ -4,7 +4,7 @@ import copy
 import hashlib
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from .overrides import OverrideError, apply_override
@@ -32,6 +32,7 @@ class Case:
     canonical: bytes  # the solver's JSON: keys sorted, no white space
     warnings: tuple[str, ...] = field(default=(), compare=False)  # printable lines
     file_name: str = field(default="case.json", compare=False)  # as messages name it
+    changes: tuple[str, ...] = field(default=(), compare=False)  # overrides of what the file says
 
     @property
     def hash(self) -> str:
@@ -90,7 +91,7 @@ def load_case(
         raise CaseError(error.faults + further) from error
     if further:
         raise CaseError(further)
-    return case
+    return replace(case, changes=tuple(overrides))
 
 
 def varied(case: Case, overrides: Sequence[str]) -> Case:

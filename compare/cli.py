@@ -97,7 +97,7 @@ def compare(**arguments):
     type=click.IntRange(1, 1000),
     help="On how many of them the other code itself runs. [default: all]",
 )
-@options.taking(options.out, options.overrides, options.jobs, options.profile)
+@options.taking(options.out, options.overrides, options.jobs_or_tasks, options.profile)
 def explain(**arguments):
     """Walk from the paper's scheme to another code, and say what each ingredient changes.
 
@@ -168,7 +168,7 @@ def stability(**arguments):
     type=click.IntRange(1, 1000),
     help="How many packings of each variant, which have no twins. [default: as --seeds]",
 )
-@options.taking(options.record, options.out, options.jobs, options.profile)
+@options.taking(options.record, options.out, options.jobs_or_tasks, options.profile)
 def record(**arguments):
     """Run CASE, and keep of the runs what a comparison reads: few enough numbers to stand beside the case.
 

@@ -11,6 +11,7 @@ from crossdem import ExitCode
 from crossdem.adapters.case import Case, CaseError, load_case
 from crossdem.adapters.dataset import Dataset, DatasetError
 from crossdem.adapters.engines import unknown_engines
+from crossdem.adapters.workflow.snakemake import check_cluster
 from crossdem.adapters.workspace import Workspace
 
 from .bench_workloads import QUICK_WORKLOADS, WORKLOADS
@@ -21,7 +22,8 @@ from .horizon import Horizon
 from .horizon_runs import find_horizon, horizon_of_runs
 from .record_command import plans_of, record_case
 from .recorded import check_writable, find_record
-from .replay import replayed, restore_packings
+from .replay import replayed, restore_packings, said_of
+from .replaced import replaced_by
 from .runs import Runs, here, run_engines, write_inputs
 from .stability import FAILED
 from .stability_runs import map_stability
@@ -36,6 +38,7 @@ def check(
         _refuse_on_ladder({"--replay": replay, "--profile": profile, "--mpi-ranks": ranks > 1})
         return _check_ladder(case_file, engines, out, overrides, jobs)
     _needs_bar(case)
+    check_cluster(profile)
     if replay:
         return _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, record)
     with _workspace(case, overrides, out) as workspace:
@@ -46,6 +49,7 @@ def check(
 def _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, folder) -> ExitCode:
     record = find_record(case, folder)
     others = replayed(record, engines, seeds, twins)
+    click.echo(said_of(others))
     runs, found = Runs((), {}), None
     with _workspace(case, overrides, out, "-replay") as workspace:
         if engines:
@@ -80,6 +84,7 @@ def _check_ladder(*arguments) -> ExitCode:
 
 def run(case_file, engines, seeds, twins, out, overrides, jobs, profile, ranks) -> ExitCode:
     case = _load(case_file, overrides)
+    check_cluster(profile)
     with _workspace(case, overrides, out) as workspace:
         return _tell(
             run_engines(case, engines, seeds, workspace, jobs, Console(), twins, profile, ranks)
@@ -118,6 +123,7 @@ def explain(
     from .explain_report import print_explanation, write_explanation  # here: as in _report
 
     case = _load(case_file, [*overrides, f"scheme.name={origin}"])
+    check_cluster(profile)
     with _workspace(case, overrides, out) as workspace:
         attribution = explain_case(
             case, target, seeds, engine_seeds or seeds, workspace, jobs, Console(), profile
@@ -156,6 +162,7 @@ def record(case_file, variants, record, out, jobs, profile, **ensemble) -> ExitC
     plans = [(plan, _load(case_file, plan.overrides)) for plan in plans_of(variants, **ensemble)]
     for _, case in plans:
         _needs_bar(case)
+    check_cluster(profile)
     for plan, case in plans:
         check_writable(record / case.name / plan.name)
     with _workspace(plans[0][1], [], out) as workspace:
@@ -231,8 +238,9 @@ def _report(
     from .report import write_report  # here: its drawing library takes half a second to load
 
     comparison = compare_runs(case, datasets, runs.failures, runs.unsupported, horizon, recorded)
+    replaced = replaced_by(comparison, workspace.root)
     page = write_report(comparison, workspace.root)
-    print_summary(comparison, page)
+    print_summary(comparison, page, replaced=replaced)
     return comparison.verdict.exit_code
 
 

@@ -9,6 +9,13 @@ import numpy as np
 
 from .quantities import QUANTITIES, Quantity, check_tables
 
+# What the stated scatter weighs beside the measured one, in degrees of freedom. Known by four, a scatter is twice as large
+# 1 time in 10, as that of a user's case may well be.
+STATED_DEGREES = 4
+# An engine counts as scattering at most this many times as much as the other, or as is stated: that one of two codes
+# scatters wildly is a difference, and no excuse for another.
+MOST_TIMES_CALMER = 3
+
 
 @dataclass(frozen=True)
 class Check:
@@ -36,23 +43,28 @@ class Check:
         """A margin or scatter on the scale of the differences: the logarithm for quotients."""
         return math.log(value) if self.kind == "ratio" else value
 
-    def scatter(self, *engines: np.ndarray) -> float:
-        """Standard deviation of one run from seed to seed, on the scale of the differences, from each engine's values.
+    def scatter(self, *engines: np.ndarray) -> tuple[float, int]:
+        """Standard deviation of one run from seed to seed, on the scale of the differences, and its degrees of freedom.
 
-        The one stated, or that of the calmer engine where it is larger: what the case states was measured on the case
-        as it stands, and a variant of it may scatter more. One engine that scatters wildly is no excuse.
+        The one stated, pooled with those of each engine's values: what the case states was measured on the case as it
+        stands, and a variant of it may scatter more.
         """
+        stated = self.on_scale(self.seed_scatter)
         measured = [self._scatter_of(values) for values in engines]
-        return max(self.on_scale(self.seed_scatter), min(measured))
+        most = MOST_TIMES_CALMER * max(stated, min(scatter for scatter, _ in measured))
+        pooled = [(stated, STATED_DEGREES)] + [(min(one, most), known) for one, known in measured]
+        degrees = sum(known for _, known in pooled)
+        return math.sqrt(sum(known * one**2 for one, known in pooled) / degrees), degrees
 
-    def _scatter_of(self, values: np.ndarray) -> float:
-        """That of one engine's packings; 0 where they do not tell."""
+    def _scatter_of(self, values: np.ndarray) -> tuple[float, int]:
+        """That of one engine's packings, and its degrees of freedom, which are 0 where they do not tell."""
         values = values[values > 0 if self.kind == "ratio" else np.isfinite(values)]
         if len(values) < 2:
-            return 0.0
+            return 0.0, 0
         scatter = np.log(values).std(ddof=1) if self.kind == "ratio" else values.std(ddof=1)
         unit = abs(values.mean()) if self.kind == "relative" else 1.0
-        return float(scatter / unit) if unit > 0 and np.isfinite(scatter) else 0.0
+        told = unit > 0 and np.isfinite(scatter)
+        return (float(scatter / unit), len(values) - 1) if told else (0.0, 0)
 
     def differences(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """Paired differences a - b, on the scale of the kind; NaN or infinite where it has no meaning."""

@@ -73,11 +73,25 @@ def _of_tier(which: int):
     """Packings (0) or twins (1), as they were asked for, else as the tier has them."""
 
     def chosen(context, parameter, value: int | None) -> int:
-        return (
-            value if value is not None else TIERS.get(context.meta.get(_TIER), WITHOUT_TIER)[which]
-        )
+        if value is not None:
+            return value
+        return TIERS.get(context.meta.get(_TIER), WITHOUT_TIER)[which]
 
     return chosen
+
+
+def _packings(context, parameter, value: int | None) -> int | None:
+    """None: all that are recorded, where nothing is run."""
+    if value is None and context.params["engines"] == [] and _TIER not in context.meta:
+        return None
+    return _of_tier(0)(context, parameter, value)
+
+
+def _record_folder(context, parameter, folder: Path) -> Path:
+    given = context.get_parameter_source(parameter.name) is not ParameterSource.DEFAULT
+    if given and context.params.get("replay") is False:
+        raise click.BadParameter("is read with --replay alone; results go to --out")
+    return folder
 
 
 def _profile_name(context, parameter, name: str | None) -> str | None:
@@ -100,7 +114,7 @@ _tier = click.option(
     type=click.Choice(list(TIERS)),
     is_eager=True,
     expose_value=False,
-    callback=lambda context, parameter, tier: context.meta.update({_TIER: tier}),
+    callback=lambda context, parameter, tier: context.meta.update({_TIER: tier} if tier else {}),
     help="How large the ensemble is: "
     + ", ".join(
         f"{name} {seeds} packings with {twins} twins" for name, (seeds, twins) in TIERS.items()
@@ -112,7 +126,7 @@ ensemble = [
     click.option(
         "--seeds",
         type=click.IntRange(1, 1000),
-        callback=_of_tier(0),
+        callback=_packings,
         help="How many packings; every engine runs each of them. [default: 2]",
     ),
     click.option(
@@ -143,30 +157,32 @@ out = click.option(
     help="Output folder. [default: results/NAME of the case, results/NAME-HASH with --set, "
     "results/NAME-compare for compare]",
 )
-jobs = click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    callback=_jobs_of,
-    help="How many processes at a time, or tasks handed in with --profile. [default: one per core, or the profile's]",
+
+
+def _jobs(help_text: str):
+    return click.option("--jobs", type=click.IntRange(1), callback=_jobs_of, help=help_text)
+
+
+jobs = _jobs("How many processes at a time. [default: one per core]")
+jobs_or_tasks = _jobs(
+    "How many processes at a time, or tasks handed in with --profile. [default: one per core, or the profile's]"
 )
-
-
 replay = click.option(
     "--replay",
     is_flag=True,
     is_eager=True,
     help="Run only --engines (by default native; none: not one) here, on recorded packings, and take the runs of all "
-    "others from the record.",
+    "others from the record; with none, of all its packings unless --seeds or --tier say otherwise.",
 )
 record = click.option(
     "--record",
-    "-o",
     type=click.Path(path_type=Path),
     default=RECORDS,
+    callback=_record_folder,
     help="The folder of recorded ensembles. [default: reference_cases/expected beside the program]",
 )
 
-running = [engines, *ensemble, out, overrides, jobs, profile, ranks]  # of an ensemble
+running = [engines, *ensemble, out, overrides, jobs_or_tasks, profile, ranks]  # of an ensemble
 
 
 def taking(*options):

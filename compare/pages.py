@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 
 import jinja2
@@ -14,7 +13,7 @@ from crossdem.adapters.case import Case
 from crossdem.adapters.files import write_whole
 
 from .record import libraries, plain
-from .wording import MINUS, printable
+from .wording import MINUS, glued, printable
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -29,7 +28,7 @@ def render(name: str, values: dict) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"cell": _cell, "glued": _glued, "shown": _shown, "css": _css}
+    environment.filters |= {"cell": _cell, "glued": glued, "shown": _shown, "css": _css}
     style = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
     return environment.get_template(name).render(values | {"style": style})
 
@@ -44,11 +43,6 @@ def _cell(text: object) -> Markup:
     for character in "\\`*_[]|~#":
         line = line.replace(character, f"\\{character}")
     return escape(line)
-
-
-def _glued(text: str) -> str:
-    """Numbers that do not break from their units, only at "to", "/" and before the scatter."""
-    return re.sub(r"(?<!to)(?<!/) (?!to\b|/|±)", "\N{NO-BREAK SPACE}", text)
 
 
 def _shown(value: object) -> str:

@@ -9,13 +9,21 @@ from crossdem.adapters.workspace import Workspace
 
 from .ensemble import Ensemble
 from .recorded import Record, RecordError
+from .wording import listed, packings
 
 
-def replayed(record: Record, engines: Sequence[str], seeds: int, twins: int) -> Ensemble:
-    """The recorded runs of all other engines than `engines`, as far as seeds and twins are asked for.
+def said_of(others: Ensemble) -> str:
+    """What of a comparison comes from the record, for people."""
+    counted = packings(len({seed for _, seed, _ in others.manifests}), others.runs_each)
+    return f"from the record: {counted} of {listed(others.engines)}"
 
-    Raises RecordError where the record has fewer packings.
+
+def replayed(record: Record, engines: Sequence[str], seeds: int | None, twins: int) -> Ensemble:
+    """The recorded runs of all other engines than `engines`, as far as seeds (None: all) and twins are asked for.
+
+    Raises RecordError where the record has fewer packings, or leaves nothing to compare.
     """
+    seeds = seeds or max(record.seeds)
     missing = [seed for seed in range(1, seeds + 1) if seed not in record.packings]
     if missing:
         has = f"{len(record.seeds)} packings, and not seed {missing[0]}"
@@ -25,8 +33,13 @@ def replayed(record: Record, engines: Sequence[str], seeds: int, twins: int) -> 
         for run in record.ensemble.manifests
         if run[0] not in engines and run[1] <= seeds and run[2] <= twins
     )
-    if not engines and len(others.engines) < 2:
-        raise RecordError(["only one engine is recorded: name others to run here with --engines"])
+    if len({*engines, *others.engines}) < 2:
+        has = listed(record.ensemble.engines)
+        raise RecordError(
+            [
+                f"the record of this case holds runs of {has} alone: name another engine to run here, with --engines"
+            ]
+        )
     return others
 
 

@@ -21,7 +21,7 @@ from . import (
     tables,
     wording,
 )
-from .checks import ALARM_ERRORS, SEEDS_FOR_INTERVAL
+from .checks import ALARM_LEVEL, SEEDS_FOR_INTERVAL
 from .colours import engine_styles
 from .comparison import Comparison
 from .junit import junit_xml
@@ -67,7 +67,7 @@ def _values(comparison: Comparison) -> dict:
         "gate_rows": run_tables.gate_rows(comparison),
         "run_rows": run_tables.run_rows(comparison),
         "fewest": SEEDS_FOR_INTERVAL,
-        "alarm_errors": ALARM_ERRORS,
+        "alarm_level": ALARM_LEVEL,
         "limitations": {
             engine: next(iter(manifests.values()))["limitations"]
             for engine in comparison.engines

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
 from . import checks, horizon_tables, tables, verdict
 from .comparison import Comparison
-from .wording import MINUS, printable, signed_difference
+from .wording import MINUS, glued, glued_sentence, printable, signed_difference
+
+NO_BREAK = "\N{NO-BREAK SPACE}"  # kept by textwrap; rich breaks there as anywhere
 
 COLOURS = {
     verdict.AGREES: "green",
-    verdict.CONSISTENT: "green",
+    verdict.CONSISTENT: "cyan",
     verdict.DIFFERS: "red",
     verdict.ENGINE_FAILED: "magenta",
     verdict.INCONCLUSIVE: "yellow",
@@ -27,10 +31,32 @@ TONES = {
 }
 
 
+class Pieces:
+    """A cell that a narrow column parts between its pieces alone."""
+
+    def __init__(self, *pieces: Text):
+        self._pieces = pieces
+        self._whole = Text(" ").join(pieces)
+
+    @classmethod
+    def of(cls, numbers: str) -> Pieces:
+        return cls(*(Text(piece.replace(NO_BREAK, " ")) for piece in glued(numbers).split(" ")))
+
+    def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
+        return Measurement(max(piece.cell_len for piece in self._pieces), self._whole.cell_len)
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        fits = self._whole.cell_len <= options.max_width
+        yield from [self._whole] if fits else self._pieces
+
+
 def print_summary(
-    comparison: Comparison, report: Path | None = None, console: Console | None = None
+    comparison: Comparison,
+    report: Path | None = None,
+    console: Console | None = None,
+    replaced: str | None = None,
 ) -> None:
-    """Print the verdict, the mean of each quantity for each engine, and where the report is.
+    """Print the verdict, the mean of each quantity for each engine, where the report is, and what it replaced.
 
     No text of a case or dataset is taken as rich's markup.
     """
@@ -41,22 +67,37 @@ def print_summary(
     for engine in comparison.engines:
         table.add_column(Text(printable(engine)), justify="right")
     for title, _, cells in tables.quantity_rows(comparison):
-        table.add_row(title, *cells)
+        table.add_row(title, *map(Pieces.of, cells))
+    if comparison.case.changes:
+        _say(console, f"The case with {', '.join(comparison.case.changes)}:")
     console.print(table)
     if comparison.results:
         console.print()
         console.print(_outcomes(comparison))
     for (engine, seed), message in comparison.failures.items():
-        console.print(Text(printable(f"{engine}, seed {seed}: {message}"), style="magenta"))
+        _say(console, f"{engine}, seed {seed}: {message}", "magenta")
     if comparison.horizon:
         console.print()
-        console.print(Text(printable(horizon_tables.sentence(comparison.horizon)), style="dim"))
+        _say(console, horizon_tables.sentence(comparison.horizon), "dim")
     console.print()
     console.print(Text(result.word, style=f"bold {COLOURS[result.word]}"))
-    console.print(Text(printable(result.sentence)))
-    console.print(Text(f"Next: {result.next_step}"))
+    _say(console, result.sentence)
+    _say(console, f"Next: {result.next_step}")
     if report is not None:
         console.print(Text(f"Report: {report}"), soft_wrap=True)
+    if replaced:
+        _say(console, replaced, "yellow")
+
+
+def _say(console: Console, text: str, style: str = "") -> None:
+    lines = textwrap.wrap(
+        glued_sentence(printable(text)),
+        console.width,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    shown = "\n".join(lines).replace(NO_BREAK, " ")
+    console.print(Text(shown, style=style), soft_wrap=True)
 
 
 def _outcomes(comparison: Comparison) -> Table:
@@ -67,8 +108,9 @@ def _outcomes(comparison: Comparison) -> Table:
         table.add_column(Text(printable(" against ".join(pair))))
     for title, results in tables.outcome_rows(comparison):
         cells = [
-            Text(f"{result.outcome} ", style=TONES[result.outcome]).append(
-                signed_difference(result.check, result.difference), style="dim"
+            Pieces(
+                Text(result.outcome, style=TONES[result.outcome]),
+                Text(signed_difference(result.check, result.difference), style="dim"),
             )
             for result in results
         ]

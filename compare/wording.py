@@ -22,6 +22,16 @@ def printable(text: str) -> str:
     return UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
+def glued(numbers: str) -> str:
+    """Numbers that do not break from their units, only at "to", "/" and before the scatter."""
+    return re.sub(r"(?<!to)(?<!/) (?!to\b|/|±)", "\N{NO-BREAK SPACE}", numbers)
+
+
+def glued_sentence(text: str) -> str:
+    """Words among which no number breaks from a unit, nor from any other word as short as one."""
+    return re.sub(r"(?<=\d) (?=\S{1,4}(?!\S))", "\N{NO-BREAK SPACE}", text)
+
+
 def plural(count: int, one: str, many: str | None = None) -> str:
     return f"{count} {one if count == 1 else many or one + 's'}"
 

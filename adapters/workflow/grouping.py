@@ -21,9 +21,9 @@ def grouped(runs: Sequence[PlannedRun], jobs: int) -> list[Group]:
 
 
 def _shared(runs: list[PlannedRun], jobs: int) -> list[Group]:
-    """Longest first, each to the task that has least to do so far."""
-    wanted = round(sum(run.expected_s for run in runs) / TASK_S)
-    tasks = [(0.0, number, []) for number in range(min(len(runs), max(jobs, wanted)))]
+    """Longest first, each to the task that has least to do so far; as many tasks for each core, that they end together."""
+    rounds = max(1, round(sum(run.expected_s for run in runs) / TASK_S / jobs))
+    tasks = [(0.0, number, []) for number in range(min(len(runs), rounds * jobs))]
     for run in runs:
         load_s, number, members = heapq.heappop(tasks)
         members.append(run)

@@ -6,6 +6,7 @@ import importlib.metadata
 import os
 import shlex
 import signal
+import subprocess
 import sys
 from pathlib import Path
 
@@ -19,6 +20,7 @@ SHIPPED_PROFILES = ("slurm",)  # folders beside this file
 GRACE_S = 5.0  # to end tasks and their engines
 GRACE_ON_CLUSTER_S = 60.0  # to take back what was handed in
 LAST_LINES = 5
+PING_S = 30.0  # for the controllers of a cluster to answer
 UNSAFE = frozenset(
     "'\"$`\\\n"
 )  # in a path that Snakemake puts into a job's script in quotes of its own
@@ -89,6 +91,29 @@ def profile_folder(profile: str) -> str:
             f"{profile}: neither {', '.join(SHIPPED_PROFILES)} nor a folder with a config.yaml"
         )
     return str(Path(profile).absolute())
+
+
+def check_cluster(profile: str | None) -> None:
+    """Raises WorkflowError where nobody would take the tasks of a `profile` that is shipped: Slurm's own commands wait."""
+    if profile != "slurm":
+        return
+    try:
+        ping = subprocess.run(
+            ["scontrol", "ping"],
+            capture_output=True,
+            text=True,
+            timeout=PING_S,
+            stdin=subprocess.DEVNULL,
+        )
+        if any(line.endswith("UP") for line in ping.stdout.splitlines()):
+            return
+        said = ping.stdout.split("\n")[:1] if ping.stdout else ping.stderr.splitlines()[-1:]
+        why = "".join(said) or "scontrol ping says nothing"
+    except FileNotFoundError:
+        why = "there is no scontrol here: apt install slurm-client"
+    except subprocess.TimeoutExpired:
+        why = f"scontrol ping has no answer after {PING_S:.0f} s"
+    raise WorkflowError(f"--profile slurm: no Slurm controller answers, and nothing was run: {why}")
 
 
 def _on_cores(jobs: int) -> list[str]:

@@ -231,7 +231,7 @@ def test_an_output_folder_that_cannot_be_written(tmp_path, place):
 @pytest.mark.parametrize("place", ["/proc/none/records", "file/records", "new/" + "x" * 300])
 def test_a_folder_of_records_that_cannot_be_written_is_told_before_anything_runs(tmp_path, place):
     (tmp_path / "file").write_text("")
-    ended = crossdem("record", REFERENCE, "--engines", "native", "-o", place, cwd=tmp_path)
+    ended = crossdem("record", REFERENCE, "--engines", "native", "--record", place, cwd=tmp_path)
     assert ended.returncode == 2
     assert "cannot be written" in ended.stderr and "--record" in ended.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["file"]

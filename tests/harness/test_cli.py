@@ -64,6 +64,7 @@ def test_version():
 def test_every_command_explains_itself(command):
     ended = crossdem(command, "--help")
     assert ended.returncode == 0 and "Usage: crossdem " + command in ended.stdout
+    assert "--profile NAME" in ended.stdout or "--profile" not in ended.stdout
 
 
 def test_an_unknown_command_is_bad_input():

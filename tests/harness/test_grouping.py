@@ -36,6 +36,11 @@ def test_no_core_idles_while_another_works_off_short_runs(jobs, tasks):
     assert len(grouped(planned(*[1.0] * 5), jobs)) == tasks
 
 
+@pytest.mark.parametrize("jobs, each", [(2, [4] * 8), (4, [4] * 8), (16, [2] * 16)])
+def test_every_core_has_as_many_tasks_of_short_runs_as_any_other(jobs, each):
+    assert sizes(grouped(planned(*[6.8] * 32), jobs)) == each
+
+
 def test_short_runs_are_shared_evenly():
     groups = grouped(planned(9.0, 8.0, 2.0, 1.0), jobs=2)
     assert [group.expected_s for group in groups] == [10.0, 10.0]

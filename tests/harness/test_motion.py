@@ -94,6 +94,21 @@ def test_the_surface_is_the_mean_height_of_the_discs_rims():
     assert np.isnan(surface_m.to_numpy()[7])  # inside the bar
 
 
+def test_the_outline_is_the_highest_rim_of_all_discs_at_each_point_to_the_last_bit():
+    """Discs of two sizes, also across the walls, and a gap without any."""
+    random = np.random.default_rng(1)
+    centre_m = random.uniform([-0.003, 0], [0.153, 0.1], (50, 2))
+    centre_m = centre_m[np.abs(centre_m[:, 0] - 0.04) > 0.006]
+    radius_m = random.choice([0.002, 0.0025], len(centre_m))
+    x_m = (np.arange(600) + 0.5) * 0.15 / 600
+    with np.errstate(invalid="ignore"):
+        rims_m = np.sqrt(radius_m**2 - (x_m[:, np.newaxis] - centre_m[:, 0]) ** 2)
+    rims_m = np.where(np.isnan(rims_m), -np.inf, centre_m[:, 1] + rims_m).max(axis=1)
+    expected_m = np.where(np.isinf(rims_m), np.nan, rims_m)
+    assert 50 < np.isnan(expected_m).sum() < 300
+    np.testing.assert_array_equal(motion._outline_m(centre_m, radius_m, x_m), expected_m)
+
+
 def test_the_bump_is_the_mean_of_the_largest_rise_on_either_side():
     assert motion.surface_bump_m(level_bed()) == 0
     bump_m = motion.surface_bump_m(level_bed(rise_left_m=0.004, rise_right_m=0.002))

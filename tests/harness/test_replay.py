@@ -58,9 +58,28 @@ def test_more_packings_than_recorded_are_refused_with_their_number(records, tmp_
     assert not (tmp_path / "out").exists()
 
 
-def test_one_recorded_engine_alone_is_no_comparison():
-    with pytest.raises(RecordError, match="only one engine is recorded"):
-        replayed(record(engines=("native",)), [], 2, 1)
+@pytest.mark.parametrize("engines", [[], ["native"]], ids=["none", "native"])
+def test_one_engine_that_is_recorded_and_run_alone_is_no_comparison(engines):
+    with pytest.raises(RecordError, match="runs of native alone: name another engine to run here"):
+        replayed(record(engines=("native",)), engines, 2, 1)
+
+
+def test_one_recorded_engine_is_compared_with_one_that_is_run():
+    assert replayed(record(engines=("native",)), ["yade"], 2, 1).engines == ("native",)
+
+
+def test_of_recorded_runs_alone_all_packings_are_compared_unless_it_is_said(
+    records, tmp_path, capsys
+):
+    for options, counted in (((), "2 packings"), (("--seeds", "1"), "1 packing")):
+        replay(records, tmp_path / counted, "--engines", "none", *options)
+        said = capsys.readouterr().out
+        assert said.startswith(f"from the record: {counted} of native and liggghts\n")
+
+
+def test_a_tier_says_how_many_packings_of_the_record_are_asked_for(records, tmp_path, capsys):
+    ended = replay(records, tmp_path / "out", "--engines", "none", "--tier", "smoke")
+    assert ended == ExitCode.BAD_INPUT and "not seed 3" in capsys.readouterr().err
 
 
 def test_a_case_of_other_runs_is_refused(records, tmp_path, capsys):
@@ -69,11 +88,51 @@ def test_a_case_of_other_runs_is_refused(records, tmp_path, capsys):
     assert "crossdem record" in capsys.readouterr().err
 
 
+def test_a_record_that_nothing_would_read_is_refused(records, tmp_path, capsys):
+    words = ["check", str(REFERENCE_CASE), "--record", str(records)]
+    assert main([*words, "--out", str(tmp_path / "out")]) == ExitCode.BAD_INPUT
+    said = capsys.readouterr().err
+    assert "'--record': is read with --replay alone; results go to --out" in said
+
+
+def test_no_letter_stands_for_the_record_as_it_would_be_taken_for_the_output(capsys):
+    words = ["check", str(REFERENCE_CASE), "--replay", "-o", "here"]
+    assert main(words) == ExitCode.BAD_INPUT
+    assert "No such option: -o" in capsys.readouterr().err
+
+
+def test_a_report_of_more_runs_is_not_replaced_in_silence(records, tmp_path, capsys):
+    def said(*options):
+        replay(records, tmp_path / "out", "--engines", "none", *options)
+        return " ".join(capsys.readouterr().out.split())
+
+    assert "replaces" not in said("--twins", "1")
+    lesser = said("--seeds", "1")
+    assert "It replaces one of 2 packings × 2 runs of native and liggghts, whose runs" in lesser
+    assert "replaces" not in said("--seeds", "1") + said()
+    (tmp_path / "out" / "report.json").write_text("torn")
+    assert "replaces" not in said("--seeds", "1")
+
+
 def test_another_margin_needs_no_other_record(records, tmp_path):
     changed = ("--set", "title=Mine", "--engines", "none")
     ended = replay(records, tmp_path / "out", *changed)
     report = json.loads((tmp_path / "out" / "report.json").read_text())
     assert (ended, report["case"]["title"]) == (report["verdict"]["exit_code"], "Mine")
+
+
+def test_what_was_changed_is_said_before_the_verdict(records, tmp_path, capsys):
+    changed = ("--set", "title='<b>Mine'", "--set", "check=[]", "--engines", "none")
+    replay(records, tmp_path / "out", *changed)
+    out = tmp_path / "out"
+    page, markdown = ((out / f"report.{end}").read_text("utf-8") for end in ("html", "md"))
+    changes = "title=&#39;&lt;b&gt;Mine&#39;</code>, <code>check=[]</code>"
+    assert page.index(changes) < page.index('<div class="verdict')
+    assert "The case with title=&#39;&lt;b&gt;Mine&#39;, check=\\[\\]" in markdown
+    assert "The case with title='<b>Mine', check=[]:" in capsys.readouterr().out
+    assert json.loads((out / "report.json").read_text())["case"]["changes"] == list(changed[1:4:2])
+    replay(records, tmp_path / "out", "--engines", "none")
+    assert "The case with" not in (out / "report.html").read_text("utf-8")
 
 
 def test_runs_made_here_start_from_the_recorded_packings(recorded, tmp_path):

@@ -11,10 +11,11 @@ import synthetic
 from rich.console import Console
 
 from crossdem.adapters import files
-from crossdem.compare import quantities, report, summary, wording
+from crossdem.compare import quantities, report, summary, verdict, wording
 from crossdem.compare.colours import engine_styles
 from crossdem.compare.comparison import compare_runs
 from crossdem.compare.ensemble import Ensemble
+from crossdem.compare.pages import TEMPLATES
 
 HOSTILE = "<script>alert('1')</script> \"q\" & | `土のモデル` [bold]$x_1$\x07"
 ENGINES = ("native", "liggghts", "yade")
@@ -217,6 +218,32 @@ def test_each_engine_has_a_colour_of_its_own_the_same_in_any_company():
     styles = engine_styles(["native", "liggghts", "yade", "lammps", "esys"])
     assert len({style.colour for style in styles.values()}) == 5
     assert engine_styles(["yade"])["yade"] == styles["yade"]
+
+
+@pytest.mark.parametrize("width", [80, 60, 48])
+def test_no_number_parts_from_its_unit_however_narrow_the_terminal(width):
+    text = StringIO()
+    comparison = compared(drag=0.9, failures={("yade", 3): "off by 5 mm or 0.25 % of it; " * 20})
+    summary.print_summary(comparison, console=Console(file=text, width=width))
+    lines = text.getvalue().splitlines()
+    words = [word for line in lines for word in line.split()]
+    units = ("N", "mJ", "µJ", "mm", "N/m", "%")
+    assert {"N", "mm", "%"} <= set(words)
+    for line in lines:
+        parts = line.split()
+        for before, unit in zip([None, *parts], parts):
+            assert unit not in units or (before and before[-1].isdigit()), line
+
+
+def test_consistent_is_never_shown_as_agreement_is():
+    assert summary.COLOURS[verdict.CONSISTENT] not in (
+        summary.COLOURS[word] for word in summary.COLOURS if word != verdict.CONSISTENT
+    )
+    style = (TEMPLATES / "report.css").read_text(encoding="utf-8")
+    tones = dict(re.findall(r"\.(agrees|consistent)\b[^{]*{ --tone: var\((--[a-z]+)\)", style))
+    assert len(set(tones.values())) == 2
+    for tone in tones.values():
+        assert len(set(re.findall(tone + r": (#\w+);", style))) == 2  # in light and in dark
 
 
 def test_the_terminal_shows_verdict_values_and_path_and_takes_no_text_for_markup(tmp_path):

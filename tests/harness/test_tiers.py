@@ -7,6 +7,7 @@ from command_line import REFERENCE, crossdem
 from crossdem import ExitCode
 from crossdem.adapters.case import CaseError
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.workflow import snakemake
 from crossdem.compare import cli, commands
 
 QUICK = ["particles.count=60", "time.penetration_s=0.1", "time.rest_s=0.1"]
@@ -58,11 +59,55 @@ def test_the_number_of_jobs_of_a_cluster_is_not_that_of_processes_here(monkeypat
 
     monkeypatch.setattr("crossdem.compare.runs.settle", settle)
     monkeypatch.setattr(commands, "horizon_of_runs", horizon_of_runs)
+    monkeypatch.setattr(commands, "check_cluster", lambda profile: None)
     monkeypatch.setattr("crossdem.compare.runs.os.sched_getaffinity", lambda _: range(7))
     for name, options in (("here", []), ("there", ["--profile", "slurm"])):
         words = ["check", str(REFERENCE), "--jobs", "100", *options]
         cli.main([*words, "--out", str(tmp_path / name)])
     assert taken == [100, 100, 7, 7]
+
+
+@pytest.mark.parametrize("command", ["check", "run", "record", "explain"])
+@pytest.mark.parametrize(
+    "ping, told",
+    [
+        ("echo 'Slurmctld(primary) at here is DOWN\n*** RESTORE ***'; exit 1", "here is DOWN"),
+        ("exit 1", "scontrol ping says nothing"),
+        ("echo 'scontrol: error: no server' >&2; exit 1", "error: no server"),
+        ("exec sleep 60", "no answer after 0 s"),
+        (None, "there is no scontrol here"),
+    ],
+    ids=["down", "mute", "error", "silent", "missing"],
+)
+def test_a_cluster_that_does_not_answer_is_told_before_anything_runs(
+    tmp_path, monkeypatch, capsys, command, ping, told
+):
+    if ping:
+        (tmp_path / "scontrol").write_text(f"#!/bin/sh\n{ping}\n")
+        (tmp_path / "scontrol").chmod(0o755)
+    monkeypatch.setattr(snakemake, "PING_S", 0.3)
+    out = tmp_path / "out"
+    words = [command, str(REFERENCE), "--profile", "slurm", "--out", str(out)]
+    with monkeypatch.context() as only:  # cases are resolved by the solver, which needs no PATH
+        only.setenv("PATH", f"{tmp_path}{':/usr/bin:/bin' if ping else ''}")
+        ended = cli.main([*words, *(["--to", "yade"] if command == "explain" else [])])
+    said = capsys.readouterr().err
+    assert ended == ExitCode.ENGINE_FAILED
+    assert said.startswith("--profile slurm: no Slurm controller answers") and told in said
+    assert said.count("\n") == 1 and not out.exists()
+
+
+def test_a_cluster_that_answers_is_taken(tmp_path, monkeypatch):
+    (tmp_path / "scontrol").write_text("#!/bin/sh\necho 'Slurmctld(primary) at here is UP'\n")
+    (tmp_path / "scontrol").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
+    snakemake.check_cluster("slurm")
+
+
+def test_no_cluster_is_asked_for_runs_here_or_for_another_profile(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    for profile in (None, str(tmp_path)):
+        snakemake.check_cluster(profile)
 
 
 def test_a_profile_that_is_not_there_is_bad_input(tmp_path):

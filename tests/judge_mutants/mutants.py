@@ -8,7 +8,7 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class Mutant:
     name: str
-    file: str  # in compare/
+    file: str  # in the repository
     right: str  # stands there once
     wrong: str
     tests: str  # file in tests/harness/
@@ -21,7 +21,7 @@ def _of(file: str, tests: str, *entries: tuple[str, str, str], only: str = "") -
 
 MUTANTS = [
     *_of(
-        "equivalence.py",
+        "compare/equivalence.py",
         "test_equivalence.py",
         ("alpha_of_a_half", "ALPHA = 0.05", "ALPHA = 0.5"),
         ("interval_of_50_percent", "(alpha=2 * ALPHA)", "(alpha=10 * ALPHA)"),
@@ -39,12 +39,12 @@ MUTANTS = [
         ("planned_within_though_beyond", "if ends[0] < 0 else", "if False else"),
     ),
     *_of(
-        "equivalence.py",
+        "compare/equivalence.py",
         "test_checks.py",
         ("planned_for_one_test", "- missed(ends[0]) - missed(ends[1])", "- missed(ends[0])"),
     ),
     *_of(
-        "checks.py",
+        "compare/checks.py",
         "test_checks.py",
         (
             "paired_by_place",
@@ -58,7 +58,8 @@ MUTANTS = [
             "[checks[0].on_scale(checks[0].margin) for",
         ),
         ("alarm_without_abs", "abs(self.difference) > self.alarm", "self.difference > self.alarm"),
-        ("alarm_within_the_margin", "return self.margin + ALARM", "return ALARM"),
+        ("alarm_within_the_margin", "return self.margin + errors", "return errors"),
+        ("alarm_of_a_known_scatter", "stdtrit(self.scatter_degrees,", "stdtrit(10**9,"),
         ("alarm_of_one_packing", "math.sqrt(2 / len(self.seeds))", "math.sqrt(2)"),
         (
             "alarm_instead_of_the_interval",
@@ -78,7 +79,7 @@ MUTANTS = [
         ("obstacles_forgotten", "result if result.obstacles else replace", "replace"),
     ),
     *_of(
-        "margins.py",
+        "compare/margins.py",
         "test_checks.py",
         (
             "quotient_without_log",
@@ -87,11 +88,18 @@ MUTANTS = [
         ),
         ("margin_without_log", "return math.log(value) if", "return value if"),
         ("over_the_sum", "abs(a.mean() + b.mean()) / 2", "abs(a.mean() + b.mean())"),
-        ("the_wildest_engine", "min(measured)", "max(measured)"),
         ("scatter_over_n_of_an_engine", "values.std(ddof=1)", "values.std(ddof=0)"),
+        ("stated_scatter_for_sure", "STATED_DEGREES = 4", "STATED_DEGREES = 10**9"),
+        ("measured_scatter_forgotten", "for one, known in measured]", "for one, known in []]"),
+        ("wildness_is_an_excuse", "MOST_TIMES_CALMER = 3", "MOST_TIMES_CALMER = 1e9"),
+        (
+            "both_as_calm_as_stated",
+            "max(stated, min(scatter for scatter, _ in measured))",
+            "stated",
+        ),
     ),
     *_of(
-        "ensemble.py",
+        "compare/ensemble.py",
         "test_checks.py",
         (
             "twins_as_packings",
@@ -102,7 +110,7 @@ MUTANTS = [
         ("first_twin_only", "by_packing.mean()", "by_packing.first()"),
     ),
     *_of(
-        "resistance.py",
+        "compare/resistance.py",
         "test_resistance.py",
         (
             "mean_of_the_tip",
@@ -113,7 +121,7 @@ MUTANTS = [
         ("window_from_the_middle", "DEEP_FROM = 1 / 3", "DEEP_FROM = 1 / 2"),
     ),
     *_of(
-        "motion.py",
+        "compare/motion.py",
         "test_motion.py",
         ("down_is_up", '"downward_m": -mean_m', '"downward_m": mean_m'),
         (
@@ -123,7 +131,7 @@ MUTANTS = [
         ),
     ),
     *_of(
-        "chaos.py",
+        "compare/chaos.py",
         "test_chaos.py",
         ("beds_with_their_chaos", "max(0.0, ratio - 1)", "ratio"),
         (
@@ -133,7 +141,7 @@ MUTANTS = [
         ),
     ),
     *_of(
-        "verdict.py",
+        "compare/verdict.py",
         "test_verdict.py",
         (
             "one_equivalence_is_enough",
@@ -150,7 +158,7 @@ MUTANTS = [
         only="never_agreement or settle_nothing or stays_open or needs_more",
     ),
     *_of(
-        "intake.py",
+        "compare/intake.py",
         "test_verdict.py",
         (
             "gates_of_twins_forgotten",
@@ -160,5 +168,21 @@ MUTANTS = [
         ("packings_not_compared", "if run[0] == first and", "if False and"),
         ("any_case_will_do", "if found != wanted:", "if False:"),
         only="gate_failed or different_packings or every_fault",
+    ),
+    *_of(
+        "adapters/gates.py",
+        "test_replay.py",
+        (
+            "contacts_gated_as_recorded",
+            'if about["packing_hash"] not in native:',
+            "if True:",
+        ),
+        (
+            "contacts_of_any_native_run",
+            'native[about["packing_hash"]], limit)',
+            "max(native.values()), limit)",
+        ),
+        ("contacts_gated_twice", 'if gate["name"] != CONTACTS]', "]"),
+        only="sets_the_gate",
     ),
 ]

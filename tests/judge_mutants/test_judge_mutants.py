@@ -82,7 +82,7 @@ def test_the_sound_judge_passes(processes, judge, tests, only):
 
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
 def test_a_fault_in_the_judge_is_noticed(processes, judge, mutant):
-    source = judge / "compare" / mutant.file
+    source = judge / mutant.file
     text = source.read_text(encoding="utf-8")
     assert text.count(mutant.right) == 1, f"{mutant.file}: not once there: {mutant.right!r}"
     source.write_text(text.replace(mutant.right, mutant.wrong), encoding="utf-8")
