@@ -43,26 +43,26 @@ inline double moment_lever(TorqueArm reading, double radius, double overlap) {
 
 /// The law of a pair, a wall or the bar in the place of j. False where they do not touch.
 template <class Law>
-bool surface_force(const Law& law, const World& w, Surface surface, const DiscInMotion& disc, ContactSpring& memory,
-                   SurfaceForce& f) {
-  const NearestPoint nearest = w.surfaces.nearest_point(surface, disc.centre);
-  if (!w.surfaces.touch(surface, nearest, disc.centre, disc.radius, law.readings.bar_corner)) {
-    memory = {};
+bool surface_force(const Law& law, const Surfaces& surfaces, const ContactParameters& parameters, double dt,
+                   PaperContacts::OnSurface& contact, const DiscInMotion& disc, SurfaceForce& f) {
+  const NearestPoint nearest = surfaces.nearest_point(contact.surface, disc.centre);
+  if (!surfaces.touch(contact.surface, nearest, disc.centre, disc.radius, law.readings.bar_corner)) {
+    contact.memory = {};
     return false;
   }
   const double overlap = disc.radius - nearest.distance;
   f.normal = nearest.normal;
   f.lever = moment_lever(law.readings.torque_arm, disc.radius, overlap);
   const double arm = f.lever * disc.radius;
-  const RelativeMotion moved(disc.displacement - w.surfaces.displacement(surface), arm * disc.rotation, f.normal);
+  const RelativeMotion moved(disc.displacement - surfaces.displacement(contact.surface), arm * disc.rotation, f.normal);
   RelativeDisplacement u{moved.normal, moved.shear, overlap, moved.normal, moved.shear};
   if (law.readings.dashpot_velocity == DashpotVelocity::true_velocity) {
-    const RelativeMotion velocity(disc.velocity * w.dt - w.surfaces.displacement(surface), arm * disc.spin * w.dt,
+    const RelativeMotion velocity(disc.velocity * dt - surfaces.displacement(contact.surface), arm * disc.spin * dt,
                                   f.normal);
     u.damped_normal = velocity.normal;
     u.damped_shear = velocity.shear;
   }
-  f.force = law.force(u, w.particle_wall, w.dt, memory);
+  f.force = law.force(u, parameters, dt, contact.memory);
   f.work = f.force.normal * u.normal + f.force.shear * u.shear;
   return true;
 }
@@ -174,7 +174,7 @@ class Step {
     const DiscInMotion disc{p_.position[i], p_.radius[i],   p_.displacement[i],
                             p_.rotation[i], p_.velocity[i], p_.spin[i]};
     SurfaceForce f;
-    if (!surface_force(scheme_.law, w_, contact.surface, disc, contact.memory, f)) return;
+    if (!surface_force(scheme_.law, w_.surfaces, w_.particle_wall, w_.dt, contact, disc, f)) return;
     w_.contact_work[i] += f.work;
     totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever));
   }

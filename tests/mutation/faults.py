@@ -117,8 +117,8 @@ FORMULAS = (
         "spin of the wrong sign at walls",
         LAW,
         STEP,
-        "displacement(surface), arm * disc.rotation",
-        "displacement(surface), -arm * disc.rotation",
+        "displacement(contact.surface), arm * disc.rotation",
+        "displacement(contact.surface), -arm * disc.rotation",
     ),
     Fault(
         "torque arm to the contact point",

@@ -302,11 +302,12 @@ HWY_INLINE void forget_forces(Load* loads) {
 #endif
 }
 
-double Move(std::size_t particles, Group* groups, Disc* discs, Load* loads, double gravity, double step) {
+Moved Move(std::size_t particles, Group* groups, Disc* discs, Load* loads, double gravity, double step) {
   const Vector dt = hn::Set(lanes, step);
   const Vector fall = hn::Set(lanes, gravity * step);
   const Vector half = hn::Set(lanes, 0.5);
   Vector farthest = hn::Zero(lanes);
+  Vector stride = hn::Zero(lanes);
   for (std::size_t i = 0; i < particles; i += count) {
     Group& group = groups[i / width];
     const std::size_t begin = i % width;
@@ -345,9 +346,12 @@ double Move(std::size_t particles, Group* groups, Disc* discs, Load* loads, doub
     const Vector away_x = hn::Sub(x, of(group.listed_x));
     const Vector away_y = hn::Sub(y, of(group.listed_y));
     const Vector away_squared = hn::Add(hn::Mul(away_x, away_x), hn::Mul(away_y, away_y));
-    farthest = hn::Max(farthest, hn::IfThenElseZero(hn::FirstN(lanes, particles - i), away_squared));
+    const Vector stride_squared = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
+    const Mask real = hn::FirstN(lanes, particles - i);
+    farthest = hn::Max(farthest, hn::IfThenElseZero(real, away_squared));
+    stride = hn::Max(stride, hn::IfThenElseZero(real, stride_squared));
   }
-  return hn::GetLane(hn::MaxOfLanes(lanes, farthest));
+  return {hn::GetLane(hn::MaxOfLanes(lanes, farthest)), hn::GetLane(hn::MaxOfLanes(lanes, stride))};
 }
 
 std::string_view InstructionSet() { return hwy::TargetName(HWY_TARGET); }
@@ -378,7 +382,7 @@ void add_pair_forces(std::span<Pairs> pairs, const Disc* discs, Load* loads, con
   HWY_DYNAMIC_DISPATCH(AddPairForces)(pairs, discs, loads, parameters, dt);
 }
 
-double move(std::size_t particles, Group* groups, Disc* discs, Load* loads, double gravity, double dt) {
+Moved move(std::size_t particles, Group* groups, Disc* discs, Load* loads, double gravity, double dt) {
   return HWY_DYNAMIC_DISPATCH(Move)(particles, groups, discs, loads, gravity, dt);
 }
 
