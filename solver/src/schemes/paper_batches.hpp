@@ -24,7 +24,7 @@ class BatchedPaperStepper final : public Stepper {
   [[nodiscard]] double spring_energy(const World& world) const override { return plain_.spring_energy(world); }
 
  private:
-  static constexpr std::size_t most_ahead = 8;
+  static constexpr std::size_t most_ahead = 16;
 
   /// One step of a wave.
   struct Level {
