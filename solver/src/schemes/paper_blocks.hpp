@@ -45,11 +45,13 @@ class PaperBlocks {
     [[nodiscard]] std::size_t batches() const { return (last_pair - first_pair + batch::width - 1) / batch::width; }
   };
 
+  /// The first of two discs that no other is near, with which the pairs of a block are filled up to whole batches.
+  [[nodiscard]] std::size_t lone_disc(std::size_t block) const { return groups_.size() * batch::width + 2 * block; }
   void surface_load(const World& world, const Surfaces& surfaces, PaperContacts::OnSurface& contact,
                     SurfaceTotals& totals);
 
   std::size_t particles_;
-  LargeArray<batch::Disc> discs_;  // of whole groups, and two that no other is near
+  LargeArray<batch::Disc> discs_;  // of whole groups, and lone ones
   LargeArray<batch::Load> loads_;
   LargeArray<batch::Group> groups_;
   LargeArray<batch::Pairs> pairs_;
