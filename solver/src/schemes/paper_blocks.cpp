@@ -8,7 +8,8 @@ namespace crossdem {
 namespace {
 
 constexpr double nowhere = 1e9;  // [m]
-/// Particles in a block, at least: with their contacts they fit into the nearest cache, where they are read twice a step.
+/// Particles in a block, at least: with their contacts they fit into the nearest cache, where they are read twice a
+/// step.
 constexpr std::size_t particles_in_block = 256;
 static_assert(particles_in_block % batch::width == 0);
 
@@ -76,7 +77,8 @@ void PaperBlocks::cut(PaperContacts& contacts) {
     const auto of_later = [end](const auto& contact) { return contact.i < end; };
     const auto first_on_surface = on_surface;
     on_surface = std::partition_point(on_surface, contacts.on_surfaces().end(), of_later);
-    const auto last_pair = std::partition_point(pairs.begin() + static_cast<std::ptrdiff_t>(pair), pairs.end(), of_later);
+    const auto last_pair =
+        std::partition_point(pairs.begin() + static_cast<std::ptrdiff_t>(pair), pairs.end(), of_later);
     blocks_.push_back({.begin = begin,
                        .end = end,
                        .first_pair = pair,

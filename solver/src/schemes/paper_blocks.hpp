@@ -1,5 +1,6 @@
 #pragma once
-// A world in batches, cut into blocks that can be stepped one after the other, each many steps ahead of the next but one.
+// A world in batches, cut into blocks that can be stepped one after the other, each many steps ahead of the next but
+// one.
 
 #include <span>
 #include <vector>
@@ -10,10 +11,10 @@
 
 namespace crossdem {
 
-/// By the paper's scheme with the default readings. A block is a run of particles, with the contacts that list one of them
-/// first; the partners of its pairs are in it or in the next one. So a block can make step n as soon as the next one has
-/// made step n - 1 and the one before it step n, and every particle has its sum in the order of the list, whichever way
-/// through blocks and steps is taken.
+/// By the paper's scheme with the default readings. A block is a run of particles, with the contacts that list one of
+/// them first; the partners of its pairs are in it or in the next one. So a block can make step n as soon as the next
+/// one has made step n - 1 and the one before it step n, and every particle has its sum in the order of the list,
+/// whichever way through blocks and steps is taken.
 class PaperBlocks {
  public:
   explicit PaperBlocks(std::size_t particles);
