@@ -152,22 +152,23 @@ HWY_INLINE Between between(const std::uint32_t* i, const std::uint32_t* j, const
   Vector yi;
   Vector dxi;
   Vector dyi;
-  Vector xj;
-  Vector yj;
-  Vector dxj;
-  Vector dyj;
+  Vector x;
+  Vector y;
+  Vector dx;
+  Vector dy;
   load_columns(first(i), xi, yi, dxi, dyi);
-  load_columns(first(j), xj, yj, dxj, dyj);
+  load_columns(first(j), x, y, dx, dy);
+  x = hn::Sub(x, xi);
+  y = hn::Sub(y, yi);
+  dx = hn::Sub(dx, dxi);
+  dy = hn::Sub(dy, dyi);
   Vector roll_i;
   Vector radius_i;
-  Vector roll_j;
-  Vector radius_j;
-  Vector unused;
-  Vector unused_too;
-  load_columns(second(i), roll_i, radius_i, unused, unused_too);
-  load_columns(second(j), roll_j, radius_j, unused, unused_too);
-  return {hn::Sub(xj, xi),   hn::Sub(yj, yi),         hn::Sub(dxj, dxi),
-          hn::Sub(dyj, dyi), hn::Add(roll_i, roll_j), hn::Add(radius_i, radius_j)};
+  Vector roll;
+  Vector reach;
+  load_columns(second(i), roll_i, radius_i, xi, yi);
+  load_columns(second(j), roll, reach, xi, yi);
+  return {x, y, dx, dy, hn::Add(roll, roll_i), hn::Add(reach, radius_i)};
 }
 #endif
 
@@ -179,9 +180,11 @@ struct Approach {
 };
 
 HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
-  const Between b = between(i, j, discs);
-  const Vector distance_squared = hn::Add(hn::Mul(b.x, b.x), hn::Mul(b.y, b.y));
-  return {b, distance_squared, hn::Div(hn::Set(lanes, 1.0), hn::Sqrt(distance_squared))};
+  Approach a{between(i, j, discs), hn::Zero(lanes), hn::Zero(lanes)};
+  const Between& b = a.between;
+  a.distance_squared = hn::Add(hn::Mul(b.x, b.x), hn::Mul(b.y, b.y));
+  a.inverse = hn::Div(hn::Set(lanes, 1.0), hn::Sqrt(a.distance_squared));
+  return a;
 }
 
 struct Forces {
