@@ -34,6 +34,14 @@ inline bool closer_than(double gap, const Particles& particles, const Surfaces& 
   return surfaces.nearest_point(surface, particles.position[i]).distance < particles.radius[i] + gap;
 }
 
+/// [m^2], the largest square of the way from where a particle was to where it is.
+inline double farthest_squared(const Particles& particles, const std::vector<Vector2>& was_at) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < particles.count(); ++i)
+    largest = std::max(largest, (particles.position[i] - was_at[i]).squaredNorm());
+  return largest;
+}
+
 /// Whose memory a contact is: one for both partners, or (readings "in turn") each particle its own.
 enum class MemoryOwner { pair, particle };
 
@@ -48,7 +56,7 @@ class Contacts {
   /// True when something has moved so far that the list could miss a contact.
   [[nodiscard]] bool outdated(const Particles& particles, const Surfaces& surfaces) const {
     if (listed_at_.size() != particles.count()) return true;
-    return outdated(farthest(particles, listed_at_), surfaces);
+    return outdated(std::sqrt(farthest_squared(particles, listed_at_)), surfaces);
   }
 
   /// The same; `moved` [m]: how far the farthest particle is from where it was listed.
@@ -60,7 +68,7 @@ class Contacts {
   /// True when the list cannot be made of the candidates any more: the next rebuild() looks at all particles again.
   [[nodiscard]] bool strayed(const Particles& particles, const Surfaces& surfaces) const {
     if (searched_at_.size() != particles.count()) return true;
-    const double moved = farthest(particles, searched_at_);
+    const double moved = std::sqrt(farthest_squared(particles, searched_at_));
     const double bar_moved = surfaces.bar ? surfaces.bar->travel() - bar_searched_at_ : 0.0;
     return skin_.now() + moved + std::max(moved, bar_moved) > width_;
   }
@@ -96,14 +104,6 @@ class Contacts {
   [[nodiscard]] const std::vector<OnSurface>& on_surfaces() const { return on_surfaces_; }
 
  private:
-  /// [m], how far any particle is from where it was.
-  static double farthest(const Particles& particles, const std::vector<Vector2>& was_at) {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < particles.count(); ++i)
-      largest = std::max(largest, (particles.position[i] - was_at[i]).squaredNorm());
-    return std::sqrt(largest);
-  }
-
   void search(const Particles& particles, const Surfaces& surfaces) {
     width_ = skin_.now() + skin_.reserve();
     candidates_ = close_pairs(particles, width_);

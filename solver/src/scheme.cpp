@@ -2,9 +2,10 @@
 
 #include <stdexcept>
 
-#include "schemes/liggghts.hpp"
+#include "schemes/batched.hpp"
+#include "schemes/liggghts_batches.hpp"
 #include "schemes/paper_batches.hpp"
-#include "schemes/yade.hpp"
+#include "schemes/yade_batches.hpp"
 
 namespace crossdem {
 
@@ -14,15 +15,14 @@ std::unique_ptr<Stepper> make_stepper(const Case& setup, World& world) {
     Readings only_start_differs = choice.readings;  // these two concern the start, not the step
     only_start_differs.initial_displacement = {};
     only_start_differs.inertia = {};
-    if (only_start_differs == Readings{}) return std::make_unique<BatchedPaperStepper>(choice.readings, world);
+    if (only_start_differs == Readings{}) return std::make_unique<BatchedStepper<PaperBatches>>(setup, world);
     return std::make_unique<PaperStepper<MixedScheme>>(MixedScheme{{choice.readings}, {choice.readings.integrator}},
                                                        choice.readings, world);
   }
-  if (choice.name == "liggghts")
-    return std::make_unique<ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>(setup, world);
+  if (choice.name == "liggghts") return std::make_unique<BatchedStepper<LiggghtsBatches>>(setup, world);
   if (choice.name == "liggghts_averaged")
     return std::make_unique<ConventionalStepper<LiggghtsScheme<LiggghtsSetVelocities>>>(setup, world);
-  if (choice.name == "yade") return std::make_unique<ConventionalStepper<YadeScheme<YadeLeapFrog>>>(setup, world);
+  if (choice.name == "yade") return std::make_unique<BatchedStepper<YadeBatches>>(setup, world);
   if (choice.name == "yade_averaged")
     return std::make_unique<ConventionalStepper<YadeScheme<YadeMemoryForce>>>(setup, world);
   throw std::invalid_argument("no scheme \"" + choice.name + "\"");

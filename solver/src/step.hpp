@@ -18,16 +18,6 @@ struct RelativeMotion {
 
 using PaperContacts = Contacts<ContactSpring, ContactSpring>;
 
-/// A disc as a surface sees it.
-struct DiscInMotion {
-  Vector2 centre;        // [m]
-  double radius;         // [m]
-  Vector2 displacement;  // [m], of the last step
-  double rotation;       // [rad], of the last step
-  Vector2 velocity;      // [m/s]
-  double spin;           // [rad/s]
-};
-
 /// What a disc has of its contact with a surface.
 struct SurfaceForce {
   ContactForce force;
@@ -87,13 +77,8 @@ class Step {
       add(contact.i, f.force, f.normal, f.lever_i);
       add(contact.j, f.force, -f.normal, f.lever_j);
     }
-    for (auto contact = contacts_.on_surfaces().begin(); contact != contacts_.on_surfaces().end();) {
-      SurfaceTotals of_block;
-      const std::size_t block = contact->i / particles_in_sum;
-      for (; contact != contacts_.on_surfaces().end() && contact->i / particles_in_sum == block; ++contact)
-        surface_load(*contact, of_block);
-      w_.totals += of_block;
-    }
+    add_in_sums(w_, contacts_.on_surfaces(),
+                [this](PaperContacts::OnSurface& contact, SurfaceTotals& totals) { surface_load(contact, totals); });
     for (std::size_t i = 0; i < p_.count(); ++i) scheme_.integrator.advance(p_, i, w_.loads[i], w_.gravity, w_.dt);
     end();
   }

@@ -11,6 +11,16 @@ namespace crossdem {
 enum class Surface : unsigned char { left, right, floor, bar };
 inline constexpr std::array all_surfaces{Surface::left, Surface::right, Surface::floor, Surface::bar};
 
+/// A disc as a surface sees it.
+struct DiscInMotion {
+  Vector2 centre;        // [m]
+  double radius;         // [m]
+  Vector2 displacement;  // [m], of the last step; only the paper's scheme asks for it
+  double rotation;       // [rad], of the last step
+  Vector2 velocity;      // [m/s]
+  double spin;           // [rad/s]
+};
+
 /// The surfaces as one thing that can be asked for the nearest point of each.
 struct Surfaces {
   double width = 0.0;      // [m], of the container

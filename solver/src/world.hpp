@@ -67,6 +67,18 @@ struct World {
   void check() const;
 };
 
+/// load(contact, totals) for every contact with a surface, in order, each run of particles_in_sum with totals of its
+/// own.
+template <class OnSurfaces, class LoadOf>
+void add_in_sums(World& world, OnSurfaces& on_surfaces, LoadOf load) {
+  for (auto contact = on_surfaces.begin(); contact != on_surfaces.end();) {
+    SurfaceTotals of_run;
+    const std::size_t run = contact->i / particles_in_sum;
+    for (; contact != on_surfaces.end() && contact->i / particles_in_sum == run; ++contact) load(*contact, of_run);
+    world.totals += of_run;
+  }
+}
+
 /// The world of a case before its first step; as for Simulation. Throws SimulationError.
 World make_world(const Case& setup, Particles particles, std::optional<double> bar_tip);
 

@@ -1,9 +1,10 @@
-// The step on a settled bed at rest: whole, by each scheme; and the two loops of the batches, on each set of
-// instructions.
+// The step on a settled bed at rest: whole, by each scheme; and the loops of the batches, on each set of instructions.
 
 #include "bed.hpp"
 #include "scheme.hpp"
+#include "schemes/liggghts_batches.hpp"
 #include "schemes/paper_batches.hpp"
+#include "schemes/yade_batches.hpp"
 
 namespace crossdem::benchmarks {
 namespace {
@@ -20,30 +21,40 @@ void advance(benchmark::State& state, const Case& setup, Maker make) {
   report(state, "particle_step", count_of(state) * steps_at_a_time);
 }
 
-void step(benchmark::State& state, const char* scheme, double dt) {
-  const Case setup = case_of(count_of(state), scheme, dt);
-  advance(state, setup, [&](World& world) { return make_stepper(setup, world); });
-}
-BENCHMARK_CAPTURE(step, liggghts, "liggghts", 5e-5)->Apply(bed_sizes);
-BENCHMARK_CAPTURE(step, yade, "yade", 5e-5)->Apply(bed_sizes);
+using PlainLiggghts = ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>;
+using PlainYade = ConventionalStepper<YadeScheme<YadeLeapFrog>>;
 
+template <class Plain>
 void plain_step(benchmark::State& state) {
+  const bool liggghts = std::is_same_v<Plain, PlainLiggghts>;
+  const Case setup = case_of(count_of(state), liggghts ? "liggghts" : "yade", 5e-5);
+  advance(state, setup, [&](World& world) { return std::make_unique<Plain>(setup, world); });
+}
+BENCHMARK_TEMPLATE(plain_step, PlainLiggghts)->Apply(bed_sizes);
+BENCHMARK_TEMPLATE(plain_step, PlainYade)->Apply(bed_sizes);
+
+void plain_paper_step(benchmark::State& state) {
   advance(state, case_of(count_of(state)),
           [](World& world) { return std::make_unique<PaperStepper<PaperScheme>>(PaperScheme{}, Readings{}, world); });
 }
-BENCHMARK(plain_step)->Name("step/paper_plain")->Apply(bed_sizes);
+BENCHMARK(plain_paper_step)->Apply(bed_sizes);
 
-void batched_step(benchmark::State& state, std::string_view instructions) {
+template <class Scheme>
+void step(benchmark::State& state, std::string_view instructions) {
   batch::use_instruction_set(instructions);
-  step(state, "paper", 1e-4);
+  const bool paper = std::is_same_v<Scheme, PaperBatches>;
+  const bool liggghts = std::is_same_v<Scheme, LiggghtsBatches>;
+  const Case setup = case_of(count_of(state), paper ? "paper" : liggghts ? "liggghts" : "yade", paper ? 1e-4 : 5e-5);
+  advance(state, setup, [&](World& world) { return make_stepper(setup, world); });
 }
 
 /// A bed as the kernels read it, at rest: its springs keep their forces however often these are evaluated.
+template <class Scheme>
 struct Batches {
-  std::vector<batch::Pairs> pairs;
+  std::vector<typename Scheme::Pairs> pairs;
   std::vector<batch::Disc> discs;
   std::vector<batch::Load> loads;
-  std::vector<batch::Group> groups;
+  std::vector<typename Scheme::Group> groups;
 
   explicit Batches(const Particles& bed)
       : discs(bed.count()), loads(bed.count()), groups((bed.count() + batch::width - 1) / batch::width) {
@@ -52,34 +63,40 @@ struct Batches {
     const std::vector<ParticlePair> close = close_pairs(bed, ListSkin(bed).now());
     pairs.resize(close.size() / batch::width);  // the last few do not fill a batch
     for (std::size_t n = 0; n < pairs.size() * batch::width; ++n) {
-      batch::Pairs& batch = pairs[n / batch::width];
+      typename Scheme::Pairs& batch = pairs[n / batch::width];
       const std::size_t k = n % batch::width;
-      const bool touching = closer_than(0.0, bed, close[n]);
       batch.i[k] = close[n].i;
       batch.j[k] = close[n].j;
-      batch.normal_spring[k] = touching ? 0.1 : batch::not_touching;
-      batch.shear_spring[k] = 0.0;
+      for (batch::Column& column : batch.memory) column[k] = 0.0;
+      if constexpr (std::is_same_v<Scheme, PaperBatches>)
+        batch.memory[0][k] = closer_than(0.0, bed, close[n]) ? 0.1 : batch::not_touching;
     }
   }
 };
 
+template <class Scheme>
 void add_pair_forces(benchmark::State& state, std::string_view instructions) {
   batch::use_instruction_set(instructions);
   const Case setup = case_of(count_of(state));
-  Batches bed(bed_of(count_of(state)));
+  World world = make_world(setup, bed_of(count_of(state)), std::nullopt);
+  auto plain = Scheme::plain(setup, world);
+  const Scheme scheme(plain);
+  Batches<Scheme> bed(bed_of(count_of(state)));
   for (auto _ : state) {
-    batch::add_pair_forces(bed.pairs, bed.discs.data(), bed.loads.data(), setup.particle_particle, setup.time.step);
+    scheme.add_pair_forces(world, bed.pairs, bed.discs.data(), bed.loads.data());
     benchmark::ClobberMemory();
   }
   report(state, "pair", bed.pairs.size() * batch::width);
 }
 
+template <class Scheme>
 void move(benchmark::State& state, std::string_view instructions) {
   batch::use_instruction_set(instructions);
-  Batches bed(bed_of(count_of(state)));
+  const World world = make_world(case_of(count_of(state)), bed_of(count_of(state)), std::nullopt);
+  Batches<Scheme> bed(world.particles);
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        batch::move(bed.discs.size(), bed.groups.data(), bed.discs.data(), bed.loads.data(), 0.0, 1e-4));
+        Scheme::move(world, bed.discs.size(), bed.groups.data(), bed.discs.data(), bed.loads.data()));
   report(state, "particle", bed.discs.size());
 }
 
@@ -89,9 +106,14 @@ void move(benchmark::State& state, std::string_view instructions) {
     const auto add = [&](const std::string& name, void (*function)(benchmark::State&, std::string_view)) {
       benchmark::RegisterBenchmark((name + "/" + std::string(set)).c_str(), function, set)->Apply(bed_sizes);
     };
-    add("step/paper", batched_step);
-    add("batch::add_pair_forces", add_pair_forces);
-    add("batch::move", move);
+    const auto add_scheme = [&]<class Scheme>(const std::string& name) {
+      add("step/" + name, step<Scheme>);
+      add("add_pair_forces/" + name, add_pair_forces<Scheme>);
+      add("move/" + name, move<Scheme>);
+    };
+    add_scheme.template operator()<PaperBatches>("paper");
+    add_scheme.template operator()<LiggghtsBatches>("liggghts");
+    add_scheme.template operator()<YadeBatches>("yade");
   }
   return true;
 }();

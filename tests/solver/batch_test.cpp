@@ -4,7 +4,10 @@
 
 #include <random>
 
+#include "schemes/batched.hpp"
+#include "schemes/liggghts_batches.hpp"
 #include "schemes/paper_batches.hpp"
+#include "schemes/yade_batches.hpp"
 #include "small_case.hpp"
 
 namespace crossdem::test {
@@ -67,50 +70,73 @@ std::vector<double> state_of(const World& w, const Stepper& stepper) {
   return all;
 }
 
-template <class Maker>
-std::vector<double> after(const Start& start, Maker make) {
+template <class AnyStepper>
+std::vector<double> after(const Start& start, std::size_t threads = 1) {
   World w = make_world(start.setup, start.particles, start.bar_tip);
   w.kinetic_limit = std::numeric_limits<double>::infinity();
-  const auto stepper = make(w);
-  stepper->advance(w, start.steps / 4);
+  w.threads = threads;
+  AnyStepper stepper(start.setup, w);
+  stepper.advance(w, start.steps / 4);
   if (w.surfaces.bar) w.surfaces.bar->start();
-  stepper->advance(w, start.steps - start.steps / 4);
-  return state_of(w, *stepper);
+  stepper.advance(w, start.steps - start.steps / 4);
+  return state_of(w, stepper);
 }
+
+class PlainPaper final : public Stepper {
+ public:
+  PlainPaper(const Case& setup, World& world) : stepper_(PaperBatches::plain(setup, world)) {}
+  void advance(World& world, long steps) override { stepper_.advance(world, steps); }
+  [[nodiscard]] double spring_energy(const World& world) const override { return stepper_.spring_energy(world); }
+
+ private:
+  PaperStepper<PaperScheme> stepper_;
+};
 
 class Batches : public testing::TestWithParam<std::string_view> {
  protected:
   void SetUp() override { batch::use_instruction_set(GetParam()); }
   void TearDown() override { batch::use_instruction_set(batch::instruction_sets().front()); }
+
+  template <class Scheme, class Plain>
+  static void give_the_bits_of() {
+    EXPECT_EQ(batch::instruction_set(), GetParam());
+    for (const Start& start : starts()) {
+      EXPECT_EQ(after<Plain>(start), after<BatchedStepper<Scheme>>(start))
+          << start.name << " of " << start.particles.count();
+    }
+  }
 };
 
-TEST_P(Batches, GiveTheBitsOfPlainStepsEqs1To24) {
-  EXPECT_EQ(batch::instruction_set(), GetParam());
-  for (const Start& start : starts()) {
-    const Readings readings;
-    const std::vector<double> plain =
-        after(start, [&](World& w) { return std::make_unique<PaperStepper<PaperScheme>>(PaperScheme{}, readings, w); });
-    const std::vector<double> batched =
-        after(start, [&](World& w) { return std::make_unique<BatchedPaperStepper>(readings, w); });
-    EXPECT_EQ(plain, batched) << start.name << " of " << start.particles.count();
-  }
+TEST_P(Batches, GiveTheBitsOfPlainStepsEqs1To24) { give_the_bits_of<PaperBatches, PlainPaper>(); }
+
+TEST_P(Batches, GiveTheBitsOfPlainStepsOfLiggghts) {
+  give_the_bits_of<LiggghtsBatches, ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>();
+}
+
+TEST_P(Batches, GiveTheBitsOfPlainStepsOfYade) {
+  give_the_bits_of<YadeBatches, ConventionalStepper<YadeScheme<YadeLeapFrog>>>();
 }
 
 INSTANTIATE_TEST_SUITE_P(OnThisMachine, Batches, testing::ValuesIn(batch::instruction_sets()),
                          [](const auto& of) { return std::string(of.param); });
 
-TEST(Threads, GiveTheBitsOfOne) {
+template <class Scheme, class Plain>
+void threads_give_the_bits_of() {
   const Particles many = gas(20000);  // of which each of four threads has its share
   const Start start{"gas", small_case(), many, std::nullopt, 60};
-  const auto on = [&](std::size_t threads) {
-    return after(start, [&](World& w) {
-      w.threads = threads;
-      return std::make_unique<BatchedPaperStepper>(Readings{}, w);
-    });
-  };
-  const std::vector<double> plain =
-      after(start, [&](World& w) { return std::make_unique<PaperStepper<PaperScheme>>(PaperScheme{}, Readings{}, w); });
-  for (const std::size_t threads : {1, 2, 3, 4}) EXPECT_EQ(plain, on(threads)) << threads;
+  const std::vector<double> plain = after<Plain>(start);
+  for (const std::size_t threads : {1, 2, 3, 4})
+    EXPECT_EQ(plain, after<BatchedStepper<Scheme>>(start, threads)) << threads;
+}
+
+TEST(Threads, GiveTheBitsOfOne) { threads_give_the_bits_of<PaperBatches, PlainPaper>(); }
+
+TEST(Threads, GiveTheBitsOfOneByTheSchemeOfLiggghts) {
+  threads_give_the_bits_of<LiggghtsBatches, ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>();
+}
+
+TEST(Threads, GiveTheBitsOfOneByTheSchemeOfYade) {
+  threads_give_the_bits_of<YadeBatches, ConventionalStepper<YadeScheme<YadeLeapFrog>>>();
 }
 
 TEST(InstructionSets, RefuseWhatIsNotHere) {

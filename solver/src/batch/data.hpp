@@ -1,5 +1,5 @@
 #pragma once
-// Particles and pairs as the kernels of the paper's scheme read them: whole cache lines, eight side by side.
+// Particles and pairs as the kernels read them: whole cache lines, eight side by side.
 
 #include <array>
 #include <cstddef>
@@ -13,45 +13,73 @@ inline constexpr std::size_t width = 8;
 
 /// What a pair reads of a particle, in one cache line.
 struct alignas(64) Disc {
-  double x = 0.0;               // [m]
-  double y = 0.0;               // [m]
-  double displacement_x = 0.0;  // [m], of the last step
-  double displacement_y = 0.0;  // [m]
-  double roll = 0.0;            // [m], radius x rotation of the last step
-  double radius = 0.0;          // [m]
+  double x = 0.0;        // [m]
+  double y = 0.0;        // [m]
+  double moves_x = 0.0;  // by the paper's scheme its displacement of the last step [m], else its velocity [m/s]
+  double moves_y = 0.0;
+  double turns = 0.0;   // by the paper's scheme radius x rotation of the last step [m], else its spin [rad/s]
+  double radius = 0.0;  // [m]
 };
 
-/// Eqs. (10)-(12) of one particle, and the work of the contacts that list it first, since the start.
+/// What the contacts of one particle add up to.
 struct alignas(32) Load {
   double force_x = 0.0;  // [N]
   double force_y = 0.0;  // [N]
-  double rim = 0.0;      // [N], sum of f_s: the moment of Eq. (12) is -radius x rim
-  double work = 0.0;     // [J], f_n du_n + f_s du_s
+  double turning = 0.0;  // by the paper's scheme [N], sum of f_s: the moment of Eq. (12) over -radius; else [N m]
+  double work = 0.0;     // [J], of the contacts that list it first, since the start
 };
 
 using Column = std::array<double, width>;
 
-inline constexpr double not_touching = -1.0;  // in place of e_n, which Eq. (8) leaves not below zero
-
-/// Pairs of particles, sorted by i, then j.
+/// Pairs of particles, sorted by i, then j, and what their law remembers of each.
+template <std::size_t memories>
 struct alignas(64) Pairs {
   std::array<std::uint32_t, width> i;
   std::array<std::uint32_t, width> j;
-  Column normal_spring;  // e_n [N]
-  Column shear_spring;   // e_s [N]
+  std::array<Column, memories> memory;
 };
 
-/// What the motion of particles needs beside their discs and loads.
+/// Remembers e_n and e_s [N].
+using TanakaPairs = Pairs<2>;
+inline constexpr double not_touching = -1.0;  // in place of e_n, which Eq. (8) leaves not below zero
+
+/// Remembers x and y of the shear spring [m].
+using LiggghtsPairs = Pairs<2>;
+
+/// Remembers x and y of the shear force on j [N], and of the normal from i to j: both zero where there is no contact.
+using YadePairs = Pairs<4>;
+
+/// What every kind of motion needs beside discs and loads.
 struct alignas(64) Group {
+  Column spin;      // [rad/s]
+  Column angle;     // [rad]
+  Column listed_x;  // [m], where the particle was when its neighbours were listed
+  Column listed_y;  // [m]
+};
+
+/// Averaged displacement, Eqs. (13)-(24).
+struct AveragedGroup : Group {
   Column velocity_x;  // [m/s]
   Column velocity_y;  // [m/s]
-  Column spin;        // [rad/s]
   Column rotation;    // [rad], of the last step
-  Column angle;       // [rad]
   Column push;        // [s/kg], dt / mass: velocity per force
   Column turn;        // [s/(kg m)], radius x dt / inertia: spin per force at the rim
-  Column listed_x;    // [m], where the particle was when its neighbours were listed
-  Column listed_y;    // [m]
+};
+
+/// Velocity Verlet as LIGGGHTS has it.
+struct VerletGroup : Group {
+  Column push;      // [s/kg], half a step over the mass
+  Column turn;      // [s/(kg m^2)], half a step over the inertia
+  Column marked_x;  // [m], where the particle was when LIGGGHTS would have listed its neighbours
+  Column marked_y;  // [m]
+};
+
+/// YADE's leap-frog.
+struct LeapFrogGroup : Group {
+  Column mass;         // [kg]
+  Column per_mass;     // [1/kg]
+  Column inertia;      // [kg m^2]
+  Column per_inertia;  // [1/(kg m^2)]
 };
 
 }  // namespace crossdem::batch

@@ -22,7 +22,6 @@ struct HookeApproach {
 struct HookeReaction {
   Vector2 force = Vector2::Zero();  // [N], on i; its partner receives the opposite
   double couple = 0.0;              // [N]: the moment is -arm x couple, for both
-  double spring_energy = 0.0;       // [J]
 };
 
 /// `shear` [m] is the contact's memory, which is carried on only where `advance` says so; `limit_force`: no attraction.
@@ -50,8 +49,13 @@ inline HookeReaction liggghts_hooke(const HookeApproach& a, const ContactParamet
   } else {
     drag -= k.shear_damping * sliding;
   }
-  return {push * normal + drag, normal.x() * drag.y() - normal.y() * drag.x(),
-          0.5 * k.normal_stiffness * a.overlap * a.overlap + 0.5 * k.shear_stiffness * shear.squaredNorm()};
+  return {push * normal + drag, normal.x() * drag.y() - normal.y() * drag.x()};
+}
+
+/// [J] in the springs of two that overlap by so much [m], if they do.
+inline double hooke_spring_energy(const ContactParameters& k, double overlap, const Vector2& shear) {
+  if (overlap <= 0.0) return 0.0;
+  return 0.5 * k.normal_stiffness * overlap * overlap + 0.5 * k.shear_stiffness * shear.squaredNorm();
 }
 
 }  // namespace crossdem

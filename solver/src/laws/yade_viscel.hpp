@@ -50,8 +50,9 @@ inline bool yade_viscel(const Vector2& normal, double overlap, const Vector2& ve
   return true;
 }
 
-/// [J] in the springs of a contact.
+/// [J] in the springs of a contact, if it is one.
 inline double yade_spring_energy(double overlap, const ContactParameters& k, const ViscElMemory& memory) {
+  if (!memory.real) return 0.0;
   const double shear = k.shear_stiffness > 0.0 ? 0.5 * memory.shear.squaredNorm() / k.shear_stiffness : 0.0;
   return 0.5 * k.normal_stiffness * overlap * overlap + shear;
 }

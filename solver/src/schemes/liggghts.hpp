@@ -26,6 +26,45 @@ class LiggghtsScheme {
     std::array<bool, MeshBar::size> held{};  // whether the triangle has a contact, touching or close
   };
   static constexpr bool first_evaluation_advances = false;
+  static constexpr double share_before = Motion::first_share;
+  static constexpr double share_after = 1.0 - Motion::first_share;
+
+  /// The bar as a mesh. When LIGGGHTS makes its neighbour lists anew, it takes the edges of a mesh that moves from its
+  /// nodes again; their last bits weigh the velocity of the wall. It does so when a disc has moved by half the skin,
+  /// and one step after the mesh has.
+  class OwnBar {
+   public:
+    OwnBar(const Case& setup, const World& world) {
+      if (!world.surfaces.bar) return;
+      const auto& radius = world.particles.radius;
+      const auto [smallest, largest] = std::minmax_element(radius.begin(), radius.end());
+      mesh_.emplace(*setup.bar, world.surfaces.bar->tip(), *largest);
+      const double skin = 0.5 * *smallest;  // of the adapter
+      limit_squared_ = 0.25 * skin * skin;
+    }
+
+    [[nodiscard]] bool must_list(double moved_squared) const {
+      return mesh_ && (has_moved_far_ || moved_squared > limit_squared_);
+    }
+
+    void advance(const Surfaces& surfaces, double dt, bool lists) {
+      if (!mesh_) return;
+      const Bar& bar = *surfaces.bar;
+      if (bar.moving()) mesh_->translate(-bar.speed() * dt);
+      velocity_ = bar.moving() ? -bar.speed() : 0.0;
+      if (lists) mesh_->measure();
+      has_moved_far_ = mesh_->has_moved(limit_squared_);
+    }
+
+    [[nodiscard]] const MeshBar& mesh() const { return *mesh_; }
+    [[nodiscard]] double velocity() const { return velocity_; }  // [m/s], as the wall's contacts see it
+
+   private:
+    std::optional<MeshBar> mesh_;
+    double velocity_ = 0.0;
+    double limit_squared_ = 0.0;  // [m^2]
+    bool has_moved_far_ = false;
+  };
 
   LiggghtsScheme(const Case& setup, World& world)
       : motion_(world.particles), limit_force_(setup.scheme.readings.attraction == Attraction::clipped) {
@@ -35,18 +74,23 @@ class LiggghtsScheme {
       p.mass[i] = std::numbers::pi * p.radius[i] * p.radius[i] * density;
       p.inertia[i] = 0.5 * p.mass[i] * p.radius[i] * p.radius[i];
     }
-    if (!world.surfaces.bar) return;
-    const auto [smallest, largest] = std::minmax_element(p.radius.begin(), p.radius.end());
-    bar_.emplace(*setup.bar, world.surfaces.bar->tip(), *largest);
-    listed_at_ = p.position;
-    const double skin = 0.5 * *smallest;  // of the adapter
-    trigger_squared_ = 0.25 * skin * skin;
   }
 
-  /// Half a kick, the drift, the bar.
+  [[nodiscard]] bool limit_force() const { return limit_force_; }
+
+  struct HalfKick {
+    double per_force;   // [s/kg]
+    double per_moment;  // [s/(kg m^2)]
+  };
+  static HalfKick half_kick_of(const Particles& p, std::size_t i, double dt) {
+    const double half = 0.5 * dt;
+    const double half_for_discs = half / 0.5;
+    return {half / p.mass[i], half_for_discs / (p.radius[i] * p.radius[i] * p.mass[i])};
+  }
+
+  /// Half a kick and the drift.
   void move(World& w) {
     motion_.begin(w.particles);
-    w.enter_impulses(Motion::first_share);
     half_kick(w);
     Particles& p = w.particles;
     for (std::size_t i = 0; i < p.count(); ++i) {
@@ -54,21 +98,12 @@ class LiggghtsScheme {
       p.position[i] += p.displacement[i];
       p.angle[i] += w.dt * p.spin[i];
     }
-    if (!bar_) return;
-    Bar& bar = *w.surfaces.bar;
-    bar.advance(w.dt);
-    if (bar.moving()) bar_->translate(-bar.speed() * w.dt);
-    bar_velocity_ = bar.moving() ? -bar.speed() : 0.0;
-    list_as_liggghts(p);
   }
 
   void finish(World& w) {
     half_kick(w);
-    w.enter_impulses(1.0 - Motion::first_share);
     motion_.end(w);
   }
-
-  void begin_evaluation() { spring_energy_ = 0.0; }
 
   void pair(World& w, PairContact<PairMemory>& contact, bool advance) {
     Particles& p = w.particles;
@@ -87,12 +122,12 @@ class LiggghtsScheme {
     const double arm_i = p.radius[i] - 0.5 * overlap;
     const double arm_j = p.radius[j] - 0.5 * overlap;
     const double turning = (arm_i * p.spin[i] + arm_j * p.spin[j]) * inverse;
-    const HookeReaction f = react({.delta = delta,
-                                   .inverse = inverse,
-                                   .overlap = overlap,
-                                   .velocity = p.velocity[i] - p.velocity[j],
-                                   .turning = turning},
-                                  w.particle_particle, w.dt, contact.memory.shear, advance);
+    const HookeReaction f = liggghts_hooke({.delta = delta,
+                                            .inverse = inverse,
+                                            .overlap = overlap,
+                                            .velocity = p.velocity[i] - p.velocity[j],
+                                            .turning = turning},
+                                           w.particle_particle, w.dt, limit_force_, advance, contact.memory.shear);
     w.loads[i].force += f.force;
     w.loads[i].moment += -arm_i * f.couple;
     w.loads[j].force += -f.force;
@@ -107,38 +142,73 @@ class LiggghtsScheme {
       w.loads[i].force.y() += w.particles.mass[i] * (w.gravity * -1.0);
   }
 
-  void surface(World& w, SurfaceContact<SurfaceMemory>& contact, bool advance) {
-    const Vector2& centre = w.particles.position[contact.i];
-    const double radius = w.particles.radius[contact.i];
-    if (contact.surface == Surface::bar) return bar_contacts(w, contact, advance);
-    const bool side = contact.surface != Surface::floor;
-    const double at = side ? centre.x() : centre.y();
-    const double wall = contact.surface == Surface::right ? w.surfaces.width : 0.0;
-    const double gap = at > wall ? at - wall - radius : wall - at - radius;
-    if (gap > 0.0) {
-      contact.memory = {};
-      return;
-    }
-    const double towards = wall - at;
-    const Vector2 delta = side ? Vector2(-towards, 0.0) : Vector2(0.0, -towards);
-    touch(w, contact, delta, -gap, Vector2::Zero(), contact.memory.shear[0], advance);
+  [[nodiscard]] static DiscInMotion disc(const Particles& p, std::size_t i) {
+    return {p.position[i], p.radius[i], Vector2::Zero(), 0.0, p.velocity[i], p.spin[i]};
   }
 
-  [[nodiscard]] double spring_energy() const { return spring_energy_; }
+  void surface(const World& w, const Surfaces& surfaces, const OwnBar& bar, SurfaceContact<SurfaceMemory>& contact,
+               const DiscInMotion& disc, SurfaceAction action, bool advance) const {
+    const auto touch = [&](const Vector2& delta, double overlap, double wall_velocity, Vector2& shear) {
+      touch_surface(w, surfaces, contact.surface, disc, delta, overlap, {0.0, wall_velocity}, shear, advance, action);
+    };
+    if (contact.surface == Surface::bar) return bar_contacts(bar, contact.memory, disc, touch);
+    const auto [delta, gap] = at_wall(surfaces, contact.surface, disc.centre, disc.radius);
+    if (gap > 0.0)
+      contact.memory = {};
+    else
+      touch(delta, -gap, 0.0, contact.memory.shear[0]);
+  }
+
+  /// [J]
+  [[nodiscard]] static double spring_energy(const World& w, const PairContact<PairMemory>& contact) {
+    const Particles& p = w.particles;
+    const double distance = (p.position[contact.i] - p.position[contact.j]).norm();
+    const double overlap = p.radius[contact.i] + p.radius[contact.j] - distance;
+    return hooke_spring_energy(w.particle_particle, overlap, contact.memory.shear);
+  }
+
+  [[nodiscard]] static double spring_energy(const World& w, const OwnBar& bar,
+                                            const SurfaceContact<SurfaceMemory>& contact) {
+    const Vector2& centre = w.particles.position[contact.i];
+    const double radius = w.particles.radius[contact.i];
+    if (contact.surface != Surface::bar) {
+      const double overlap = -at_wall(w.surfaces, contact.surface, centre, radius).gap;
+      return hooke_spring_energy(w.particle_wall, overlap, contact.memory.shear[0]);
+    }
+    double energy = 0.0;
+    for (std::size_t k = 0; k < MeshBar::size; ++k) {
+      if (!contact.memory.held[k]) continue;
+      const std::optional<MeshContact> at = bar.mesh().triangles()[k].contact(centre);
+      if (at) energy += hooke_spring_energy(w.particle_wall, radius - at->distance, contact.memory.shear[k]);
+    }
+    return energy;
+  }
 
  private:
+  struct AtWall {
+    Vector2 delta = Vector2::Zero();  // [m], from the wall's closest point to the centre
+    double gap = 0.0;                 // [m]
+  };
+
+  static AtWall at_wall(const Surfaces& surfaces, Surface surface, const Vector2& centre, double radius) {
+    const bool side = surface != Surface::floor;
+    const double at = side ? centre.x() : centre.y();
+    const double wall = surface == Surface::right ? surfaces.width : 0.0;
+    const double gap = at > wall ? at - wall - radius : wall - at - radius;
+    const double towards = wall - at;
+    return {side ? Vector2(-towards, 0.0) : Vector2(0.0, -towards), gap};
+  }
+
   /// Each triangle has its contact with its own shear spring. A disc that comes to lie over the other triangle of a
   /// face takes it along, src/fix_contact_history_mesh_I.h; the first triangle of a face may then act beside the second
   /// for a step, where the disc is so near to the line between them that it counts to both.
-  void bar_contacts(World& w, SurfaceContact<SurfaceMemory>& contact, bool advance) {
-    const Vector2& centre = w.particles.position[contact.i];
-    const double radius = w.particles.radius[contact.i];
-    SurfaceMemory& memory = contact.memory;
+  template <class Touch>
+  static void bar_contacts(const OwnBar& bar, SurfaceMemory& memory, const DiscInMotion& disc, Touch touch) {
     std::array<bool, MeshBar::size> kept{};
     for (std::size_t k = 0; k < MeshBar::size; ++k) {
-      const std::optional<MeshContact> at = bar_->triangles()[k].contact(centre);
-      const double gap = at ? at->distance - radius : radius;
-      if (!at || (gap > 0.0 && gap >= close_share * radius)) continue;
+      const std::optional<MeshContact> at = bar.mesh().triangles()[k].contact(disc.centre);
+      const double gap = at ? at->distance - disc.radius : disc.radius;
+      if (!at || (gap > 0.0 && gap >= close_share * disc.radius)) continue;
       const std::size_t other = MeshBar::other(k);
       if (!memory.held[k]) {
         if (at->on_face && kept[other]) continue;
@@ -150,60 +220,39 @@ class LiggghtsScheme {
         continue;
       }
       double velocity = 0.0;  // of the wall, weighed as LIGGGHTS does: the weights need not sum to one
-      if (bar_velocity_ != 0.0)
-        velocity = at->barycentric[0] * bar_velocity_ + at->barycentric[1] * bar_velocity_ +
-                   at->barycentric[2] * bar_velocity_;
-      touch(w, contact, -at->delta, -gap, {0.0, velocity}, memory.shear[k], advance);
+      if (bar.velocity() != 0.0)
+        velocity = at->barycentric[0] * bar.velocity() + at->barycentric[1] * bar.velocity() +
+                   at->barycentric[2] * bar.velocity();
+      touch(-at->delta, -gap, velocity, memory.shear[k]);
     }
     memory.held = kept;
   }
 
-  HookeReaction react(const HookeApproach& a, const ContactParameters& k, double dt, Vector2& shear, bool advance) {
-    HookeReaction reaction = liggghts_hooke(a, k, dt, limit_force_, advance, shear);
-    spring_energy_ += reaction.spring_energy;
-    return reaction;
-  }
-
-  void touch(World& w, const SurfaceContact<SurfaceMemory>& contact, const Vector2& delta, double overlap,
-             const Vector2& wall_velocity, Vector2& shear, bool advance) {
-    Particles& p = w.particles;
-    const std::uint32_t i = contact.i;
-    const double distance = p.radius[i] - overlap;
+  void touch_surface(const World& w, const Surfaces& surfaces, Surface surface, const DiscInMotion& disc,
+                     const Vector2& delta, double overlap, const Vector2& wall_velocity, Vector2& shear, bool advance,
+                     SurfaceAction action) const {
+    const double distance = disc.radius - overlap;
     const double inverse = 1.0 / distance;
-    const double arm = p.radius[i] - 0.5 * overlap;
-    const HookeReaction f = react({.delta = delta,
-                                   .inverse = inverse,
-                                   .overlap = p.radius[i] - distance,
-                                   .velocity = p.velocity[i] - wall_velocity,
-                                   .turning = arm * p.spin[i] * inverse},
-                                  w.particle_wall, w.dt, shear, advance);
-    w.loads[i].force += f.force;
-    w.loads[i].moment += -arm * f.couple;
-    w.totals.add(w.surfaces, contact.surface, p.position[i], f.force);
-    w.contact_work[i] -= w.dt * (f.force.dot(p.velocity[i] - wall_velocity) - f.couple * arm * p.spin[i]);
-  }
-
-  /// When LIGGGHTS makes its neighbour lists anew, it takes the edges of a mesh that moves from its nodes again; their
-  /// last bits weigh the velocity of the wall. It does so when a disc has moved by half the skin, and one step after
-  /// the mesh has.
-  void list_as_liggghts(const Particles& p) {
-    bool lists = bar_has_moved_far_;
-    for (std::size_t i = 0; i < p.count() && !lists; ++i)
-      lists = (p.position[i] - listed_at_[i]).squaredNorm() > trigger_squared_;
-    if (lists) {
-      listed_at_ = p.position;
-      bar_->measure();
-    }
-    bar_has_moved_far_ = bar_->has_moved(trigger_squared_);
+    const double arm = disc.radius - 0.5 * overlap;
+    const Vector2 velocity = disc.velocity - wall_velocity;
+    const HookeReaction f = liggghts_hooke({.delta = delta,
+                                            .inverse = inverse,
+                                            .overlap = disc.radius - distance,
+                                            .velocity = velocity,
+                                            .turning = arm * disc.spin * inverse},
+                                           w.particle_wall, w.dt, limit_force_, advance, shear);
+    action.load.force += f.force;
+    action.load.moment += -arm * f.couple;
+    action.totals.add(surfaces, surface, disc.centre, f.force);
+    action.work -= w.dt * (f.force.dot(velocity) - f.couple * arm * disc.spin);
   }
 
   static void half_kick(World& w) {
     Particles& p = w.particles;
-    const double half = 0.5 * w.dt;
-    const double half_for_discs = half / 0.5;
     for (std::size_t i = 0; i < p.count(); ++i) {
-      p.velocity[i] += half / p.mass[i] * w.loads[i].force;
-      p.spin[i] += half_for_discs / (p.radius[i] * p.radius[i] * p.mass[i]) * w.loads[i].moment;
+      const HalfKick kick = half_kick_of(p, i, w.dt);
+      p.velocity[i] += kick.per_force * w.loads[i].force;
+      p.spin[i] += kick.per_moment * w.loads[i].moment;
     }
   }
 
@@ -211,12 +260,6 @@ class LiggghtsScheme {
 
   Motion motion_;
   bool limit_force_;
-  std::optional<MeshBar> bar_;
-  double bar_velocity_ = 0.0;  // [m/s], as the wall's contacts see it
-  std::vector<Vector2> listed_at_;
-  double trigger_squared_ = 0.0;  // [m^2]
-  bool bar_has_moved_far_ = false;
-  double spring_energy_ = 0.0;
 };
 
 static_assert(ConventionalScheme<LiggghtsScheme<LiggghtsVerlet>> &&

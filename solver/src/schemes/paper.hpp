@@ -21,6 +21,8 @@ struct MixedScheme {
 template <class Scheme>
 class PaperStepper final : public Stepper {
  public:
+  using OwnContacts = PaperContacts;
+
   PaperStepper(const Scheme& scheme, const Readings& readings, World& world)
       : scheme_(scheme),
         in_turn_(readings.update_order == UpdateOrder::in_turn),

@@ -1,74 +1,95 @@
 #pragma once
-// The paper's scheme by the default readings, eight pairs and particles at a time, several steps in one pass through
-// memory, on one thread or more: the same bits as PaperStepper, which stays as what this is held against.
+// The paper's scheme by the default readings, in batches.
 
-#include <atomic>
-#include <exception>
-#include <vector>
+#include <span>
 
-#include "../spin_barrier.hpp"
+#include "../batch/kernels.hpp"
 #include "paper.hpp"
-#include "paper_blocks.hpp"
 
 namespace crossdem {
 
-/// Makes up to most_ahead steps at a time as a wave through the blocks: block n makes the first of them, then block n -
-/// 1 the second, n - 2 the third and so on, while all these are near the processor. Threads share out the steps, one
-/// behind the other in the wave.
-class BatchedPaperStepper final : public Stepper {
+/// What BatchedStepper asks of a scheme. `moves_first`: whether a step of the plain scheme begins with the motion, so
+/// that one of the batches, which ends with it, holds the forces of one step and the motion of the next. Of a step's
+/// impulses, `share_before` is that of the forces at its start, `share_after` that of those at its end. `marks`:
+/// whether its groups remember where particles were when the code made lists of its own.
+class PaperBatches {
  public:
-  BatchedPaperStepper(const Readings& readings, World& world);
-
-  void advance(World& world, long steps) override;
-
-  [[nodiscard]] double spring_energy(const World& world) const override { return plain_.spring_energy(world); }
-
- private:
-  static constexpr std::size_t most_ahead = 16;
-
-  /// One step of a wave.
-  struct Level {
-    alignas(64) std::atomic<std::size_t> blocks_done = 0;
-    batch::Moved moved;
-    std::vector<SurfaceTotals> sums;  // for particles_in_sum at a time
-    Surfaces surfaces;                // during the step
+  using Plain = PaperStepper<PaperScheme>;
+  using Group = batch::AveragedGroup;
+  using Pairs = batch::TanakaPairs;
+  /// The world's bar is all it takes; see ConventionalScheme.
+  struct OwnBar {
+    [[nodiscard]] static bool must_list(double) { return false; }
+    static void advance(const Surfaces&, double, bool) {}
   };
+  static constexpr bool moves_first = false;
+  static constexpr bool marks = false;
+  static constexpr double share_before = 0.0;
+  static constexpr double share_after = 1.0;
 
-  /// What a wave that went too far goes back to. The particles and pairs of the world are as they were then.
-  struct Checkpoint {
-    long steps;
-    Surfaces surfaces;
-    SurfaceTotals totals;
-    MomentumLedger momentum_ledger;
-    EnergyLedger energy_ledger;
-    batch::Moved moved;
-    std::vector<PaperContacts::OnSurface> on_surfaces;
-  };
+  static Plain plain(const Case& setup, World& world) { return {PaperScheme{}, setup.scheme.readings, world}; }
+  explicit PaperBatches(Plain&) {}
+  static OwnBar& bar(Plain&) {
+    static OwnBar none;
+    return none;
+  }
 
-  enum class Next { wave, list, start_again, end };
+  static void take(const World& w, std::size_t i, batch::Disc& disc, Group& group, std::size_t k) {
+    const Particles& p = w.particles;
+    disc.moves_x = p.displacement[i].x();
+    disc.moves_y = p.displacement[i].y();
+    disc.turns = p.radius[i] * p.rotation[i];
+    group.velocity_x[k] = p.velocity[i].x();
+    group.velocity_y[k] = p.velocity[i].y();
+    group.rotation[k] = p.rotation[i];
+    group.push[k] = w.dt / p.mass[i];
+    group.turn[k] = p.radius[i] * (w.dt / p.inertia[i]);
+  }
 
-  void work(World& world, long last_step, std::size_t thread);
-  Next plan(World& world, long last_step);
-  void make_list(World& world);
-  void run_levels(const World& world, std::size_t thread);
-  void finish_wave(World& world);
-  void set_checkpoint(const World& world);
-  void go_back(World& world);
+  static void give_back(World& w, std::size_t i, const batch::Disc& disc, const batch::Load&, const Group& group,
+                        std::size_t k) {
+    Particles& p = w.particles;
+    p.displacement[i] = {disc.moves_x, disc.moves_y};
+    p.velocity[i] = {group.velocity_x[k], group.velocity_y[k]};
+    p.rotation[i] = group.rotation[k];
+  }
 
-  PaperContacts& contacts() { return plain_.contacts(); }
+  static std::array<double, 2> numbers(const ContactSpring& spring) {
+    return {spring.touching ? spring.normal : batch::not_touching, spring.shear};
+  }
+  static ContactSpring memory(const std::array<double, 2>& numbers) {
+    return numbers[0] >= 0.0 ? ContactSpring{numbers[0], numbers[1], true} : ContactSpring{};
+  }
 
-  PaperStepper<PaperScheme> plain_;
-  PaperBlocks blocks_;
-  std::size_t threads_ = 1;
-  SpinBarrier barrier_;
-  std::array<Level, most_ahead> levels_;
-  std::size_t ahead_ = 0;  // steps of the next wave
-  batch::Moved moved_;     // in the latest step, and since the list was made
-  Checkpoint checkpoint_;
-  Next next_ = Next::end;
-  bool went_too_far_ = false;  // in the latest wave: further than the list allows
-  bool careful_ = false;       // one step at a time until the next list
-  std::exception_ptr failure_;
+  static void add_pair_forces(const World& w, std::span<Pairs> pairs, const batch::Disc* discs, batch::Load* loads) {
+    batch::add_tanaka_forces(pairs, discs, loads, w.particle_particle, w.dt);
+  }
+
+  static void after_pairs(const World&, std::size_t, std::size_t, batch::Load*) {}
+
+  static void surface(const World& w, const Surfaces& surfaces, const OwnBar&, PaperContacts::OnSurface& contact,
+                      const batch::Disc& disc, const Group& group, batch::Load& load, SurfaceTotals& totals) {
+    const std::size_t k = contact.i % batch::width;
+    const DiscInMotion motion{{disc.x, disc.y},
+                              disc.radius,
+                              {disc.moves_x, disc.moves_y},
+                              group.rotation[k],
+                              {group.velocity_x[k], group.velocity_y[k]},
+                              group.spin[k]};
+    SurfaceForce f;
+    if (!surface_force(TanakaLaw<DefaultReadings>{}, surfaces, w.particle_wall, w.dt, contact, motion, f)) return;
+    const Vector2 on_disc = received(f.force, f.normal);
+    load.force_x += on_disc.x();
+    load.force_y += on_disc.y();
+    load.turning += f.lever * f.force.shear;
+    load.work += f.work;
+    totals.add(surfaces, contact.surface, motion.centre, on_disc);
+  }
+
+  static batch::Moved move(const World& w, std::size_t particles, Group* groups, batch::Disc* discs,
+                           batch::Load* loads) {
+    return batch::move_averaged(particles, groups, discs, loads, w.gravity, w.dt);
+  }
 };
 
 }  // namespace crossdem

@@ -17,28 +17,41 @@ class YadeScheme {
   using SurfaceMemory = ViscElMemory;
   static constexpr bool first_evaluation_advances = true;
 
+  static constexpr double share_before = 1.0;
+  static constexpr double share_after = 0.0;
+
+  /// The bar as a box that moves by its velocity.
+  struct OwnBar {
+    Vector2 half = Vector2::Zero();      // [m], half the box's width and length
+    Vector2 centre = Vector2::Zero();    // [m], of the box
+    Vector2 velocity = Vector2::Zero();  // [m/s]
+
+    OwnBar(const Case& setup, const World& world) {
+      if (!world.surfaces.bar) return;
+      half = {setup.bar->width / 2, setup.bar->length / 2};
+      centre = {setup.bar->centre_x, world.surfaces.bar->tip() + half.y()};
+    }
+    [[nodiscard]] static bool must_list(double) { return false; }
+    void advance(const Surfaces& surfaces, double dt, bool) {
+      if (!surfaces.bar) return;
+      velocity.y() = surfaces.bar->moving() ? -surfaces.bar->speed() : 0.0;
+      centre += velocity * dt;
+    }
+  };
+
   YadeScheme(const Case& setup, const World& world)
       : motion_(world.particles),
         pairs_(in_series(setup.particle_particle, setup.particle_particle, false)),
-        walls_(in_series(setup.particle_particle, setup.particle_wall, true)) {
-    if (!world.surfaces.bar) return;
-    half_ = {setup.bar->width / 2, setup.bar->length / 2};
-    centre_ = {setup.bar->centre_x, world.surfaces.bar->tip() + half_.y()};
-  }
+        walls_(in_series(setup.particle_particle, setup.particle_wall, true)) {}
+
+  [[nodiscard]] const ContactParameters& pairs() const { return pairs_; }
 
   void move(World& w) {
-    w.enter_impulses(1.0);
     for (std::size_t i = 0; i < w.particles.count(); ++i) motion_.move(w.particles, i, w.loads[i], w.gravity, w.dt);
-    if (!w.surfaces.bar) return;
-    w.surfaces.bar->advance(w.dt);
-    bar_velocity_.y() = w.surfaces.bar->moving() ? -w.surfaces.bar->speed() : 0.0;
-    centre_ += bar_velocity_ * w.dt;
   }
 
   static void finish(World&) {}
   static void after_pairs(World&) {}
-  void begin_evaluation() { spring_energy_ = 0.0; }
-  [[nodiscard]] double spring_energy() const { return spring_energy_; }
 
   /// Ig2_Sphere_Sphere_ScGeom; body 1 is the one with the lower number.
   void pair(World& w, PairContact<ViscElMemory>& contact, bool) {
@@ -55,8 +68,8 @@ class YadeScheme {
     const Vector2 arm_i = point - p.position[i];
     const Vector2 arm_j = point - p.position[j];
     Vector2 force;
-    const Vector2 velocity = at_point(p, i, arm_i) - at_point(p, j, arm_j);
-    if (!react(contact.memory, pairs_, normal, overlap, velocity, w.dt, force)) return;
+    const Vector2 velocity = at_point(disc(p, i), arm_i) - at_point(disc(p, j), arm_j);
+    if (!yade_viscel(normal, overlap, velocity, pairs_, w.dt, contact.memory, force)) return;
     w.loads[i].force += -force;
     w.loads[i].moment += -cross(arm_i, force);
     w.loads[j].force += force;
@@ -64,22 +77,38 @@ class YadeScheme {
     w.contact_work[i] += force.dot(velocity) * w.dt;
   }
 
+  [[nodiscard]] DiscInMotion disc(const Particles& p, std::size_t i) const {
+    return {p.position[i], p.radius[i], Vector2::Zero(), 0.0, motion_.velocity(p, i), motion_.spin(p, i)};
+  }
+
   /// The surface is body 1.
-  void surface(World& w, SurfaceContact<ViscElMemory>& contact, bool) {
-    Particles& p = w.particles;
-    const std::uint32_t i = contact.i;
-    const Meeting at = contact.surface == Surface::bar ? meet_box(p.position[i], p.radius[i])
-                                                       : meet_wall(w, contact.surface, p.position[i], p.radius[i]);
+  void surface(const World& w, const Surfaces& surfaces, const OwnBar& bar, SurfaceContact<ViscElMemory>& contact,
+               const DiscInMotion& disc, SurfaceAction action, bool) const {
+    const Meeting at = meet(surfaces, bar, contact.surface, disc.centre, disc.radius);
     if (!contact.memory.real && at.overlap < 0.0) return;
-    const Vector2 arm = at.point - p.position[i];
-    const Vector2 surface_velocity = contact.surface == Surface::bar ? bar_velocity_ : Vector2::Zero();
-    const Vector2 velocity = surface_velocity - at_point(p, i, arm);
+    const Vector2 arm = at.point - disc.centre;
+    const Vector2 surface_velocity = contact.surface == Surface::bar ? bar.velocity : Vector2::Zero();
+    const Vector2 velocity = surface_velocity - at_point(disc, arm);
     Vector2 force;
-    if (!react(contact.memory, walls_, at.normal, at.overlap, velocity, w.dt, force)) return;
-    w.loads[i].force += force;
-    w.loads[i].moment += cross(arm, force);
-    w.totals.add(w.surfaces, contact.surface, p.position[i], force);
-    w.contact_work[i] += force.dot(velocity) * w.dt;
+    if (!yade_viscel(at.normal, at.overlap, velocity, walls_, w.dt, contact.memory, force)) return;
+    action.load.force += force;
+    action.load.moment += cross(arm, force);
+    action.totals.add(surfaces, contact.surface, disc.centre, force);
+    action.work += force.dot(velocity) * w.dt;
+  }
+
+  /// [J]
+  [[nodiscard]] double spring_energy(const World& w, const PairContact<ViscElMemory>& contact) const {
+    const Particles& p = w.particles;
+    const double distance = (p.position[contact.j] - p.position[contact.i]).norm();
+    return yade_spring_energy(p.radius[contact.i] + p.radius[contact.j] - distance, pairs_, contact.memory);
+  }
+
+  [[nodiscard]] double spring_energy(const World& w, const OwnBar& bar,
+                                     const SurfaceContact<ViscElMemory>& contact) const {
+    const Vector2& centre = w.particles.position[contact.i];
+    const double overlap = meet(w.surfaces, bar, contact.surface, centre, w.particles.radius[contact.i]).overlap;
+    return yade_spring_energy(overlap, walls_, contact.memory);
   }
 
  private:
@@ -109,49 +138,42 @@ class YadeScheme {
   }
 
   /// Velocity of the disc's material at `arm` from its centre [m/s].
-  [[nodiscard]] Vector2 at_point(const Particles& p, std::size_t i, const Vector2& arm) const {
-    const double spin = motion_.spin(p, i);
-    return motion_.velocity(p, i) + Vector2(-(spin * arm.y()), spin * arm.x());
+  [[nodiscard]] static Vector2 at_point(const DiscInMotion& disc, const Vector2& arm) {
+    return disc.velocity + Vector2(-(disc.spin * arm.y()), disc.spin * arm.x());
+  }
+
+  static Meeting meet(const Surfaces& surfaces, const OwnBar& bar, Surface surface, const Vector2& centre,
+                      double radius) {
+    return surface == Surface::bar ? meet_box(bar, centre, radius) : meet_wall(surfaces, surface, centre, radius);
   }
 
   /// Ig2_Wall_Sphere_ScGeom: the contact point is on the wall.
-  static Meeting meet_wall(const World& w, Surface surface, const Vector2& centre, double radius) {
+  static Meeting meet_wall(const Surfaces& surfaces, Surface surface, const Vector2& centre, double radius) {
     switch (surface) {
       case Surface::left:
         return {{1.0, 0.0}, -(std::abs(centre.x()) - radius), {0.0, centre.y()}};
       case Surface::right:
-        return {{-1.0, 0.0}, -(std::abs(centre.x() - w.surfaces.width) - radius), {w.surfaces.width, centre.y()}};
+        return {{-1.0, 0.0}, -(std::abs(centre.x() - surfaces.width) - radius), {surfaces.width, centre.y()}};
       default:
         return {{0.0, 1.0}, -(std::abs(centre.y()) - radius), {centre.x(), 0.0}};
     }
   }
 
   /// Ig2_Box_Sphere_ScGeom, for a centre outside of the box: the contact point is half-way between both surfaces.
-  [[nodiscard]] Meeting meet_box(const Vector2& centre, double radius) const {
-    const Vector2 from_box = centre - centre_;
-    const Vector2 on_box = from_box.cwiseMax(-half_).cwiseMin(half_);
+  static Meeting meet_box(const OwnBar& bar, const Vector2& centre, double radius) {
+    const Vector2 from_box = centre - bar.centre;
+    const Vector2 on_box = from_box.cwiseMax(-bar.half).cwiseMin(bar.half);
     Vector2 towards = on_box - from_box;
     const double distance = towards.norm();
     towards /= distance;
-    const Vector2 of_box = on_box + centre_;
+    const Vector2 of_box = on_box + bar.centre;
     const Vector2 of_disc = centre + towards * radius;
     return {-towards, radius - distance, 0.5 * (of_box + of_disc)};
-  }
-
-  bool react(ViscElMemory& memory, const ContactParameters& k, const Vector2& normal, double overlap,
-             const Vector2& velocity, double dt, Vector2& force) {
-    const bool together = yade_viscel(normal, overlap, velocity, k, dt, memory, force);
-    if (together) spring_energy_ += yade_spring_energy(overlap, k, memory);
-    return together;
   }
 
   Motion motion_;
   ContactParameters pairs_;
   ContactParameters walls_;
-  Vector2 half_ = Vector2::Zero();    // [m], half the box's width and length
-  Vector2 centre_ = Vector2::Zero();  // [m], of the box
-  Vector2 bar_velocity_ = Vector2::Zero();
-  double spring_energy_ = 0.0;
 };
 
 static_assert(ConventionalScheme<YadeScheme<YadeLeapFrog>> && ConventionalScheme<YadeScheme<YadeMemoryForce>>);

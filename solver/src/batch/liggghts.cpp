@@ -1,0 +1,173 @@
+// LIGGGHTS: the law of schemes/liggghts.hpp and laws/liggghts_hooke.hpp, and velocity Verlet.
+
+#include "instruction_sets.hpp"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "batch/liggghts.cpp"
+#include <hwy/foreach_target.h>
+
+#include "lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crossdem::batch::HWY_NAMESPACE {
+
+class HookePairLaw {
+ public:
+  static constexpr bool turn_alike = false;
+  HookePairLaw(const ContactParameters& parameters, double dt, bool limit_force)
+      : k_(parameters), dt_(dt), limit_force_(limit_force) {}
+
+  struct Approach {
+    Vector x;  // [m], i minus j
+    Vector y;
+    Vector velocity_x;  // [m/s], i minus j
+    Vector velocity_y;
+    Vector radius_i;
+    Vector radius_j;
+    Vector spin_i;
+    Vector spin_j;
+    Vector distance_squared;
+    Vector distance;
+    Vector inverse;  // 1 / distance
+  };
+
+  HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) const {
+    const Columns a = columns_of(i, discs);
+    const Columns b = columns_of(j, discs);
+    const Vector x = hn::Sub(a.x, b.x);
+    const Vector y = hn::Sub(a.y, b.y);
+    const Vector distance_squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+    const Vector distance = hn::Sqrt(distance_squared);
+    return {x,
+            y,
+            hn::Sub(a.moves_x, b.moves_x),
+            hn::Sub(a.moves_y, b.moves_y),
+            a.radius,
+            b.radius,
+            a.turns,
+            b.turns,
+            distance_squared,
+            distance,
+            hn::Div(hn::Set(lanes, 1.0), distance)};
+  }
+
+  /// Zero, and nothing remembered, where discs do not touch.
+  template <class Memory>
+  HWY_INLINE Forces forces(const Approach& a, Memory memory) const {
+    const Vector zero = hn::Zero(lanes);
+    const Vector half = hn::Set(lanes, 0.5);
+    const Vector dt = hn::Set(lanes, dt_);
+    const Vector reach = hn::Add(a.radius_i, a.radius_j);
+    const Mask touch = hn::Lt(a.distance_squared, hn::Mul(reach, reach));
+    const Vector overlap = hn::Sub(reach, a.distance);
+    const Vector half_overlap = hn::Mul(half, overlap);
+    const Vector arm_i = hn::Sub(a.radius_i, half_overlap);
+    const Vector arm_j = hn::Sub(a.radius_j, half_overlap);
+    const Vector rolling = hn::Add(hn::Mul(arm_i, a.spin_i), hn::Mul(arm_j, a.spin_j));
+    const Vector turning = hn::Mul(rolling, a.inverse);
+    const Vector normal_x = hn::Mul(a.x, a.inverse);
+    const Vector normal_y = hn::Mul(a.y, a.inverse);
+    const Vector approach = hn::Add(hn::Mul(a.velocity_x, normal_x), hn::Mul(a.velocity_y, normal_y));
+    const Vector sliding_x = hn::Add(hn::Sub(a.velocity_x, hn::Mul(approach, normal_x)), hn::Mul(a.y, turning));
+    const Vector sliding_y = hn::Sub(hn::Sub(a.velocity_y, hn::Mul(approach, normal_y)), hn::Mul(a.x, turning));
+    Vector push = hn::Add(hn::Mul(hn::Set(lanes, -k_.normal_damping), approach),
+                          hn::Mul(hn::Set(lanes, k_.normal_stiffness), overlap));
+    if (limit_force_) push = hn::IfThenZeroElse(hn::Lt(push, zero), push);
+
+    Vector shear_x = hn::Add(hn::Load(lanes, memory(0)), hn::Mul(sliding_x, dt));
+    Vector shear_y = hn::Add(hn::Load(lanes, memory(1)), hn::Mul(sliding_y, dt));
+    const Vector off_plane = hn::Add(hn::Mul(shear_x, normal_x), hn::Mul(shear_y, normal_y));
+    shear_x = hn::Sub(shear_x, hn::Mul(off_plane, normal_x));
+    shear_y = hn::Sub(shear_y, hn::Mul(off_plane, normal_y));
+    const Vector stretch = hn::Sqrt(hn::Add(hn::Mul(shear_x, shear_x), hn::Mul(shear_y, shear_y)));
+    const Vector stiffness = hn::Set(lanes, k_.shear_stiffness);
+    const Vector spring_x = hn::Neg(hn::Mul(stiffness, shear_x));
+    const Vector spring_y = hn::Neg(hn::Mul(stiffness, shear_y));
+    const Vector spring = hn::Mul(stiffness, stretch);
+    const Vector cap = hn::Mul(hn::Set(lanes, k_.friction), hn::Abs(push));
+    const Mask slips = hn::And(touch, hn::Gt(spring, cap));
+    const Vector damping = hn::Set(lanes, k_.shear_damping);
+    Vector drag_x = hn::Sub(spring_x, hn::Mul(damping, sliding_x));
+    Vector drag_y = hn::Sub(spring_y, hn::Mul(damping, sliding_y));
+    if (!hn::AllFalse(lanes, slips)) {
+      const Vector share = hn::Div(cap, spring);
+      const Vector slipping_x = hn::Mul(spring_x, share);
+      const Vector slipping_y = hn::Mul(spring_y, share);
+      const Vector per_stiffness = hn::Set(lanes, 1.0 / k_.shear_stiffness);
+      drag_x = hn::IfThenElse(slips, slipping_x, drag_x);
+      drag_y = hn::IfThenElse(slips, slipping_y, drag_y);
+      shear_x = hn::IfThenElse(slips, quotient(hn::Neg(slipping_x), stiffness, per_stiffness), shear_x);
+      shear_y = hn::IfThenElse(slips, quotient(hn::Neg(slipping_y), stiffness, per_stiffness), shear_y);
+    }
+    hn::Store(hn::IfThenElseZero(touch, shear_x), lanes, memory(0));
+    hn::Store(hn::IfThenElseZero(touch, shear_y), lanes, memory(1));
+    const Vector force_x = hn::Add(hn::Mul(push, normal_x), drag_x);
+    const Vector force_y = hn::Add(hn::Mul(push, normal_y), drag_y);
+    const Vector couple = hn::Sub(hn::Mul(normal_x, drag_y), hn::Mul(normal_y, drag_x));
+    const Vector power =
+        hn::Sub(hn::Add(hn::Mul(force_x, a.velocity_x), hn::Mul(force_y, a.velocity_y)), hn::Mul(couple, rolling));
+    return {hn::IfThenElseZero(touch, hn::Neg(force_x)), hn::IfThenElseZero(touch, hn::Neg(force_y)),
+            hn::IfThenElseZero(touch, hn::Mul(hn::Neg(arm_i), couple)),
+            hn::IfThenElseZero(touch, hn::Mul(hn::Neg(arm_j), couple)),
+            hn::IfThenElseZero(touch, hn::Neg(hn::Mul(dt, power)))};
+  }
+
+ private:
+  const ContactParameters& k_;
+  double dt_;
+  bool limit_force_;
+};
+
+void AddLiggghtsForces(std::span<LiggghtsPairs> pairs, const Disc* discs, Load* loads,
+                       const ContactParameters& parameters, double dt, bool limit_force) {
+  add_pair_forces(HookePairLaw(parameters, dt, limit_force), pairs, discs, loads);
+}
+
+Moved MoveVerlet(std::size_t particles, VerletGroup* groups, Disc* discs, Load* loads, double step) {
+  const Vector dt = hn::Set(lanes, step);
+  Largest farthest(particles);
+  Largest stride(particles);
+  Largest marked(particles);
+  for (std::size_t i = 0; i < particles; i += count) {
+    Turn<VerletGroup> t(i, groups, discs, loads);
+    VerletGroup& group = t.group;
+    const Vector push = t.of(group.push);
+    const Vector kick_x = hn::Mul(push, t.force_x);
+    const Vector kick_y = hn::Mul(push, t.force_y);
+    const Vector turn = hn::Mul(t.of(group.turn), t.turning);
+    t.moves_x = hn::Add(hn::Add(t.moves_x, kick_x), kick_x);
+    t.moves_y = hn::Add(hn::Add(t.moves_y, kick_y), kick_y);
+    const Vector spin = hn::Add(hn::Add(t.of(group.spin), turn), turn);
+    t.put(group.spin, spin);
+    const Vector displacement_x = hn::Mul(dt, t.moves_x);
+    const Vector displacement_y = hn::Mul(dt, t.moves_y);
+    t.x = hn::Add(t.x, displacement_x);
+    t.y = hn::Add(t.y, displacement_y);
+    t.increase(group.angle, hn::Mul(dt, spin));
+    t.finish([&group](std::size_t k, double) { return group.spin[k]; });
+    farthest.include(i, t.squared_way_from(group.listed_x, group.listed_y));
+    stride.include(i, hn::Add(hn::Mul(displacement_x, displacement_x), hn::Mul(displacement_y, displacement_y)));
+    marked.include(i, t.squared_way_from(group.marked_x, group.marked_y));
+  }
+  return {farthest.value(), stride.value(), marked.value()};
+}
+
+}  // namespace crossdem::batch::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crossdem::batch {
+
+HWY_EXPORT(AddLiggghtsForces);
+HWY_EXPORT(MoveVerlet);
+
+void add_liggghts_forces(std::span<LiggghtsPairs> pairs, const Disc* discs, Load* loads,
+                         const ContactParameters& parameters, double dt, bool limit_force) {
+  HWY_DYNAMIC_DISPATCH(AddLiggghtsForces)(pairs, discs, loads, parameters, dt, limit_force);
+}
+
+Moved move_verlet(std::size_t particles, VerletGroup* groups, Disc* discs, Load* loads, double dt) {
+  return HWY_DYNAMIC_DISPATCH(MoveVerlet)(particles, groups, discs, loads, dt);
+}
+
+}  // namespace crossdem::batch
+#endif
