@@ -33,8 +33,10 @@ inline double moment_lever(TorqueArm reading, double radius, double overlap) {
 
 /// The law of a pair, a wall or the bar in the place of j. False where they do not touch.
 template <class Law>
-bool surface_force(const Law& law, const Surfaces& surfaces, const ContactParameters& parameters, double dt,
-                   PaperContacts::OnSurface& contact, const DiscInMotion& disc, SurfaceForce& f) {
+[[gnu::always_inline]] inline bool surface_force(const Law& law, const Surfaces& surfaces,
+                                                 const ContactParameters& parameters, double dt,
+                                                 PaperContacts::OnSurface& contact, const DiscInMotion& disc,
+                                                 SurfaceForce& f) {
   const NearestPoint nearest = surfaces.nearest_point(contact.surface, disc.centre);
   if (!surfaces.touch(contact.surface, nearest, disc.centre, disc.radius, law.readings.bar_corner)) {
     contact.memory = {};

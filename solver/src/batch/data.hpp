@@ -19,6 +19,9 @@ struct alignas(64) Disc {
   double moves_y = 0.0;
   double turns = 0.0;   // by the paper's scheme radius x rotation of the last step [m], else its spin [rad/s]
   double radius = 0.0;  // [m]
+  // Once more: what a pair reads of both then fits into one line.
+  double turns_again = 0.0;
+  double radius_again = 0.0;
 };
 
 /// What the contacts of one particle add up to.
@@ -70,6 +73,7 @@ struct AveragedGroup : Group {
 struct VerletGroup : Group {
   Column push;      // [s/kg], half a step over the mass
   Column turn;      // [s/(kg m^2)], half a step over the inertia
+  Column weight;    // [N], downwards; zero where it is among the forces already
   Column marked_x;  // [m], where the particle was when LIGGGHTS would have listed its neighbours
   Column marked_y;  // [m]
 };

@@ -46,7 +46,7 @@ struct Moved {
 /// Eqs. (12)-(24), as integrators.hpp.
 Moved move_averaged(std::size_t particles, AveragedGroup* groups, Disc* discs, Load* loads, double gravity, double dt);
 
-/// The second half of a step and the first one of the next, as schemes/liggghts.hpp; weight is among the loads.
+/// The second half of a step and the first one of the next, as schemes/liggghts.hpp.
 Moved move_verlet(std::size_t particles, VerletGroup* groups, Disc* discs, Load* loads, double dt);
 
 /// As schemes/yade_motion.hpp.

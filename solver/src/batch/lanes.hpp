@@ -164,21 +164,82 @@ HWY_INLINE Columns columns_of(const std::uint32_t* numbers, const Disc* discs) {
 }
 #endif
 
-/// What the pairs of a turn do to their discs.
-struct Forces {
-  Vector x;          // [N], on j; i receives the opposite
-  Vector y;          // [N]
-  Vector turning_i;  // as in Load
-  Vector turning_j;
-  Vector work;  // [J], of i
+/// Two discs of a pair: i minus j, and what is needed of each.
+struct Both {
+  Vector x;
+  Vector y;
+  Vector moves_x;
+  Vector moves_y;
+  Vector turns_i;
+  Vector radius_i;
+  Vector turns_j;
+  Vector radius_j;
 };
 
-/// Pair after pair. `turn_alike`: turning_i is also j's.
-template <bool turn_alike>
+HWY_INLINE Both both_of(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  // Products with one, minus one and zero are exact.
+  alignas(64) constexpr std::array<double, count> of_i{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0};
+  alignas(64) constexpr std::array<double, count> of_j{-1.0, -1.0, -1.0, -1.0, 0.0, 0.0, 1.0, 1.0};
+  const Vector take_i = hn::Load(lanes, of_i.data());
+  const Vector take_j = hn::Load(lanes, of_j.data());
+  const auto line = [&](std::size_t k) HWY_ATTR {
+    return hn::MulAdd(hn::Load(lanes, &discs[i[k]].x), take_i, hn::Mul(hn::Load(lanes, &discs[j[k]].x), take_j));
+  };
+  const std::array<Vector, count> d{line(0), line(1), line(2), line(3), line(4), line(5), line(6), line(7)};
+  const auto columns = [&](const std::array<Vector, 4>& pairs, Vector& first, Vector& second, Vector& third,
+                           Vector& fourth) HWY_ATTR {
+    const auto [a, b, c, e] = pairs;
+    const Vector low = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(b), a);
+    const Vector high = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(e), c);
+    const Vector low_odd = hn::OddEvenBlocks(b, hn::SwapAdjacentBlocks(a));
+    const Vector high_odd = hn::OddEvenBlocks(e, hn::SwapAdjacentBlocks(c));
+    first = hn::ConcatLowerLower(lanes, high, low);
+    second = hn::ConcatLowerLower(lanes, high_odd, low_odd);
+    third = hn::ConcatUpperUpper(lanes, high, low);
+    fourth = hn::ConcatUpperUpper(lanes, high_odd, low_odd);
+  };
+  const auto even = [&](std::size_t k) HWY_ATTR { return hn::InterleaveLower(lanes, d[k], d[k + 1]); };
+  const auto odd = [&](std::size_t k) HWY_ATTR { return hn::InterleaveUpper(lanes, d[k], d[k + 1]); };
+  Both b{};
+  columns({even(0), even(2), even(4), even(6)}, b.x, b.moves_x, b.turns_i, b.turns_j);
+  columns({odd(0), odd(2), odd(4), odd(6)}, b.y, b.moves_y, b.radius_i, b.radius_j);
+  return b;
+#else
+  const Columns a = columns_of(i, discs);
+  const Columns b = columns_of(j, discs);
+  return {hn::Sub(a.x, b.x),
+          hn::Sub(a.y, b.y),
+          hn::Sub(a.moves_x, b.moves_x),
+          hn::Sub(a.moves_y, b.moves_y),
+          a.turns,
+          a.radius,
+          b.turns,
+          b.radius};
+#endif
+}
+
+/// What the pairs of a turn do to their discs.
+struct Forces {
+  Vector x;  // [N], on i or j, as the law's signs say; the other one receives the opposite
+  Vector y;
+  Vector turning_i;  // as in Load, but for the sign
+  Vector turning_j;
+  Vector work;  // [J], of i, but for the sign
+};
+
+/// By which Forces go into a load: force, turning, work.
+struct Signs {
+  std::array<double, 4> i;
+  std::array<double, 4> j;
+};
+
+/// Pair after pair, by the signs of the law.
+template <class Law>
 HWY_INLINE void add(Forces f, const std::uint32_t* i, const std::uint32_t* j, Load* loads) {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-  alignas(32) constexpr std::array<double, 4> signs_i{-1.0, -1.0, 1.0, 1.0};
-  alignas(32) constexpr std::array<double, 4> signs_j{1.0, 1.0, 1.0, 0.0};
+  alignas(32) constexpr std::array<double, 4> signs_i = Law::signs.i;
+  alignas(32) constexpr std::array<double, 4> signs_j = Law::signs.j;
   const auto on_i = hn::Load(half_line, signs_i.data());
   const auto on_j = hn::Load(half_line, signs_j.data());
   const auto add_row = [&](hn::Vec<HalfLine> row_i, hn::Vec<HalfLine> row_j, std::size_t k) HWY_ATTR {
@@ -190,7 +251,7 @@ HWY_INLINE void add(Forces f, const std::uint32_t* i, const std::uint32_t* j, Lo
   std::array<Vector, 4> rows_i{f.x, f.y, f.turning_i, f.work};
   std::array<Vector, 4> rows_j{f.x, f.y, f.turning_j, f.work};
   transpose(rows_i[0], rows_i[1], rows_i[2], rows_i[3]);
-  if constexpr (turn_alike)
+  if constexpr (Law::turn_alike)
     rows_j = rows_i;
   else
     transpose(rows_j[0], rows_j[1], rows_j[2], rows_j[3]);
@@ -207,19 +268,20 @@ HWY_INLINE void add(Forces f, const std::uint32_t* i, const std::uint32_t* j, Lo
   store_columns(f.x, f.y, f.turning_i, f.work, [&](std::size_t k) HWY_ATTR { return &given[k].force_x; });
   alignas(64) std::array<double, count> turning_j;
   hn::Store(f.turning_j, lanes, turning_j.data());
+  const auto add_row = [](const Load& by, const std::array<double, 4>& signs, Load& load) HWY_ATTR {
+    load = {load.force_x + signs[0] * by.force_x, load.force_y + signs[1] * by.force_y,
+            load.turning + signs[2] * by.turning, load.work + signs[3] * by.work};
+  };
   for (std::size_t k = 0; k < count; ++k) {
-    Load& load_i = loads[i[k]];
-    load_i = {load_i.force_x - given[k].force_x, load_i.force_y - given[k].force_y, load_i.turning + given[k].turning,
-              load_i.work + given[k].work};
-    Load& load_j = loads[j[k]];
-    load_j = {load_j.force_x + given[k].force_x, load_j.force_y + given[k].force_y, load_j.turning + turning_j[k],
-              load_j.work};
+    add_row(given[k], Law::signs.i, loads[i[k]]);
+    given[k].turning = turning_j[k];
+    add_row(given[k], Law::signs.j, loads[j[k]]);
   }
 #endif
 }
 
 /// The forces of pairs by a `law`: approach(i, j, discs) is what it needs of the discs, forces(approach, memory) brings
-/// the memory up to date, of which memory(n) is the column n of a turn.
+/// the memory up to date, of which memory(n) is the column n of a turn; `turn_alike`: turning_i is also j's.
 ///
 /// A turn of the loop looks at one batch, takes the forces of the batch before it and adds those of the one before
 /// that: none of the three waits for another, where one batch after the other would wait for each root, division and
@@ -231,14 +293,17 @@ HWY_INLINE void add_pair_forces(const Law& law, std::span<Batch> batches, const 
   if (turns == 0) return;
   const auto i = [&](std::size_t turn) { return batches[turn / parts].i.data() + count * (turn % parts); };
   const auto j = [&](std::size_t turn) { return batches[turn / parts].j.data() + count * (turn % parts); };
-  const auto look = [&](std::size_t turn) HWY_ATTR { return law.approach(i(turn), j(turn), discs); };
-  const auto take = [&](const typename Law::Approach& near, std::size_t turn) HWY_ATTR {
+  const auto look = [&](std::size_t turn) HWY_ATTR __attribute__((always_inline)) {
+    return law.approach(i(turn), j(turn), discs);
+  };
+  const auto take = [&](const typename Law::Approach& near, std::size_t turn) HWY_ATTR __attribute__((always_inline)) {
     Batch& batch = batches[turn / parts];
     const std::size_t begin = count * (turn % parts);
     return law.forces(near, [&batch, begin](std::size_t n) { return batch.memory[n].data() + begin; });
   };
-  const auto give = [&](const Forces& found, std::size_t turn)
-                        HWY_ATTR { add<Law::turn_alike>(found, i(turn), j(turn), loads); };
+  const auto give = [&](const Forces& found, std::size_t turn) HWY_ATTR __attribute__((always_inline)) {
+    add<Law>(found, i(turn), j(turn), loads);
+  };
 
   Forces found = take(look(0), 0);
   if (turns > 1) {
@@ -295,7 +360,8 @@ class Turn {
   template <class Turns>
   HWY_INLINE void finish(Turns turns) const {
     store_columns(x, y, moves_x, moves_y, [&](std::size_t k) HWY_ATTR { return &discs_[k].x; });
-    for (std::size_t k = 0; k < count; ++k) discs_[k].turns = turns(begin_ + k, discs_[k].radius);
+    for (std::size_t k = 0; k < count; ++k)
+      discs_[k].turns = discs_[k].turns_again = turns(begin_ + k, discs_[k].radius);
   }
 
   /// [m^2]

@@ -13,62 +13,43 @@ namespace crossdem::batch::HWY_NAMESPACE {
 class HookePairLaw {
  public:
   static constexpr bool turn_alike = false;
+  static constexpr Signs signs{{1.0, 1.0, -1.0, -1.0}, {-1.0, -1.0, -1.0, 0.0}};
   HookePairLaw(const ContactParameters& parameters, double dt, bool limit_force)
       : k_(parameters), dt_(dt), limit_force_(limit_force) {}
 
   struct Approach {
-    Vector x;  // [m], i minus j
-    Vector y;
-    Vector velocity_x;  // [m/s], i minus j
-    Vector velocity_y;
-    Vector radius_i;
-    Vector radius_j;
-    Vector spin_i;
-    Vector spin_j;
+    Both both;
     Vector distance_squared;
     Vector distance;
     Vector inverse;  // 1 / distance
   };
 
   HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) const {
-    const Columns a = columns_of(i, discs);
-    const Columns b = columns_of(j, discs);
-    const Vector x = hn::Sub(a.x, b.x);
-    const Vector y = hn::Sub(a.y, b.y);
-    const Vector distance_squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+    const Both b = both_of(i, j, discs);
+    const Vector distance_squared = hn::Add(hn::Mul(b.x, b.x), hn::Mul(b.y, b.y));
     const Vector distance = hn::Sqrt(distance_squared);
-    return {x,
-            y,
-            hn::Sub(a.moves_x, b.moves_x),
-            hn::Sub(a.moves_y, b.moves_y),
-            a.radius,
-            b.radius,
-            a.turns,
-            b.turns,
-            distance_squared,
-            distance,
-            hn::Div(hn::Set(lanes, 1.0), distance)};
+    return {b, distance_squared, distance, hn::Div(hn::Set(lanes, 1.0), distance)};
   }
 
   /// Zero, and nothing remembered, where discs do not touch.
   template <class Memory>
   HWY_INLINE Forces forces(const Approach& a, Memory memory) const {
+    const Both& b = a.both;
     const Vector zero = hn::Zero(lanes);
-    const Vector half = hn::Set(lanes, 0.5);
     const Vector dt = hn::Set(lanes, dt_);
-    const Vector reach = hn::Add(a.radius_i, a.radius_j);
+    const Vector reach = hn::Add(b.radius_i, b.radius_j);
     const Mask touch = hn::Lt(a.distance_squared, hn::Mul(reach, reach));
     const Vector overlap = hn::Sub(reach, a.distance);
-    const Vector half_overlap = hn::Mul(half, overlap);
-    const Vector arm_i = hn::Sub(a.radius_i, half_overlap);
-    const Vector arm_j = hn::Sub(a.radius_j, half_overlap);
-    const Vector rolling = hn::Add(hn::Mul(arm_i, a.spin_i), hn::Mul(arm_j, a.spin_j));
+    const Vector half_overlap = hn::Mul(hn::Set(lanes, 0.5), overlap);
+    const Vector arm_i = hn::Sub(b.radius_i, half_overlap);
+    const Vector arm_j = hn::Sub(b.radius_j, half_overlap);
+    const Vector rolling = hn::Add(hn::Mul(arm_i, b.turns_i), hn::Mul(arm_j, b.turns_j));
     const Vector turning = hn::Mul(rolling, a.inverse);
-    const Vector normal_x = hn::Mul(a.x, a.inverse);
-    const Vector normal_y = hn::Mul(a.y, a.inverse);
-    const Vector approach = hn::Add(hn::Mul(a.velocity_x, normal_x), hn::Mul(a.velocity_y, normal_y));
-    const Vector sliding_x = hn::Add(hn::Sub(a.velocity_x, hn::Mul(approach, normal_x)), hn::Mul(a.y, turning));
-    const Vector sliding_y = hn::Sub(hn::Sub(a.velocity_y, hn::Mul(approach, normal_y)), hn::Mul(a.x, turning));
+    const Vector normal_x = hn::Mul(b.x, a.inverse);
+    const Vector normal_y = hn::Mul(b.y, a.inverse);
+    const Vector approach = hn::Add(hn::Mul(b.moves_x, normal_x), hn::Mul(b.moves_y, normal_y));
+    const Vector sliding_x = hn::Add(hn::Sub(b.moves_x, hn::Mul(approach, normal_x)), hn::Mul(b.y, turning));
+    const Vector sliding_y = hn::Sub(hn::Sub(b.moves_y, hn::Mul(approach, normal_y)), hn::Mul(b.x, turning));
     Vector push = hn::Add(hn::Mul(hn::Set(lanes, -k_.normal_damping), approach),
                           hn::Mul(hn::Set(lanes, k_.normal_stiffness), overlap));
     if (limit_force_) push = hn::IfThenZeroElse(hn::Lt(push, zero), push);
@@ -78,37 +59,37 @@ class HookePairLaw {
     const Vector off_plane = hn::Add(hn::Mul(shear_x, normal_x), hn::Mul(shear_y, normal_y));
     shear_x = hn::Sub(shear_x, hn::Mul(off_plane, normal_x));
     shear_y = hn::Sub(shear_y, hn::Mul(off_plane, normal_y));
-    const Vector stretch = hn::Sqrt(hn::Add(hn::Mul(shear_x, shear_x), hn::Mul(shear_y, shear_y)));
-    const Vector stiffness = hn::Set(lanes, k_.shear_stiffness);
-    const Vector spring_x = hn::Neg(hn::Mul(stiffness, shear_x));
-    const Vector spring_y = hn::Neg(hn::Mul(stiffness, shear_y));
-    const Vector spring = hn::Mul(stiffness, stretch);
-    const Vector cap = hn::Mul(hn::Set(lanes, k_.friction), hn::Abs(push));
-    const Mask slips = hn::And(touch, hn::Gt(spring, cap));
+    const Vector stiffness = hn::Set(lanes, -k_.shear_stiffness);
     const Vector damping = hn::Set(lanes, k_.shear_damping);
+    const Vector spring_x = hn::Mul(stiffness, shear_x);
+    const Vector spring_y = hn::Mul(stiffness, shear_y);
     Vector drag_x = hn::Sub(spring_x, hn::Mul(damping, sliding_x));
     Vector drag_y = hn::Sub(spring_y, hn::Mul(damping, sliding_y));
-    if (!hn::AllFalse(lanes, slips)) {
+    // Few contacts slip, and only those that may need the root.
+    const Vector cap = hn::Mul(hn::Set(lanes, k_.friction), hn::Abs(push));
+    const Vector shear_squared = hn::Add(hn::Mul(shear_x, shear_x), hn::Mul(shear_y, shear_y));
+    const Vector spring_squared = hn::Mul(hn::Set(lanes, k_.shear_stiffness * k_.shear_stiffness), shear_squared);
+    const Vector surely_held = hn::Mul(hn::Set(lanes, 1.0 - 1e-12), hn::Mul(cap, cap));
+    const Mask may_slip = hn::AndNot(hn::Lt(spring_squared, surely_held), touch);
+    if (HWY_UNLIKELY(!hn::AllFalse(lanes, may_slip))) {
+      const Vector spring = hn::Mul(hn::Neg(stiffness), hn::Sqrt(shear_squared));
+      const Mask slips = hn::Gt(spring, cap);
       const Vector share = hn::Div(cap, spring);
       const Vector slipping_x = hn::Mul(spring_x, share);
       const Vector slipping_y = hn::Mul(spring_y, share);
-      const Vector per_stiffness = hn::Set(lanes, 1.0 / k_.shear_stiffness);
       drag_x = hn::IfThenElse(slips, slipping_x, drag_x);
       drag_y = hn::IfThenElse(slips, slipping_y, drag_y);
-      shear_x = hn::IfThenElse(slips, quotient(hn::Neg(slipping_x), stiffness, per_stiffness), shear_x);
-      shear_y = hn::IfThenElse(slips, quotient(hn::Neg(slipping_y), stiffness, per_stiffness), shear_y);
+      shear_x = hn::IfThenElse(slips, hn::Div(slipping_x, stiffness), shear_x);
+      shear_y = hn::IfThenElse(slips, hn::Div(slipping_y, stiffness), shear_y);
     }
     hn::Store(hn::IfThenElseZero(touch, shear_x), lanes, memory(0));
     hn::Store(hn::IfThenElseZero(touch, shear_y), lanes, memory(1));
-    const Vector force_x = hn::Add(hn::Mul(push, normal_x), drag_x);
-    const Vector force_y = hn::Add(hn::Mul(push, normal_y), drag_y);
-    const Vector couple = hn::Sub(hn::Mul(normal_x, drag_y), hn::Mul(normal_y, drag_x));
+    const Vector force_x = hn::IfThenElseZero(touch, hn::Add(hn::Mul(push, normal_x), drag_x));
+    const Vector force_y = hn::IfThenElseZero(touch, hn::Add(hn::Mul(push, normal_y), drag_y));
+    const Vector couple = hn::IfThenElseZero(touch, hn::Sub(hn::Mul(normal_x, drag_y), hn::Mul(normal_y, drag_x)));
     const Vector power =
-        hn::Sub(hn::Add(hn::Mul(force_x, a.velocity_x), hn::Mul(force_y, a.velocity_y)), hn::Mul(couple, rolling));
-    return {hn::IfThenElseZero(touch, hn::Neg(force_x)), hn::IfThenElseZero(touch, hn::Neg(force_y)),
-            hn::IfThenElseZero(touch, hn::Mul(hn::Neg(arm_i), couple)),
-            hn::IfThenElseZero(touch, hn::Mul(hn::Neg(arm_j), couple)),
-            hn::IfThenElseZero(touch, hn::Neg(hn::Mul(dt, power)))};
+        hn::Sub(hn::Add(hn::Mul(force_x, b.moves_x), hn::Mul(force_y, b.moves_y)), hn::Mul(couple, rolling));
+    return {force_x, force_y, hn::Mul(arm_i, couple), hn::Mul(arm_j, couple), hn::Mul(dt, power)};
   }
 
  private:
@@ -132,7 +113,7 @@ Moved MoveVerlet(std::size_t particles, VerletGroup* groups, Disc* discs, Load* 
     VerletGroup& group = t.group;
     const Vector push = t.of(group.push);
     const Vector kick_x = hn::Mul(push, t.force_x);
-    const Vector kick_y = hn::Mul(push, t.force_y);
+    const Vector kick_y = hn::Mul(push, hn::Sub(t.force_y, t.of(group.weight)));
     const Vector turn = hn::Mul(t.of(group.turn), t.turning);
     t.moves_x = hn::Add(hn::Add(t.moves_x, kick_x), kick_x);
     t.moves_y = hn::Add(hn::Add(t.moves_y, kick_y), kick_y);

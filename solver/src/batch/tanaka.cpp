@@ -13,6 +13,7 @@ namespace crossdem::batch::HWY_NAMESPACE {
 class TanakaPairLaw {
  public:
   static constexpr bool turn_alike = true;
+  static constexpr Signs signs{{-1.0, -1.0, 1.0, 1.0}, {1.0, 1.0, 1.0, 0.0}};
   TanakaPairLaw(const ContactParameters& parameters, double dt) : p_(parameters), dt_(dt) {}
 
   /// j minus i; of rotation and radius the sum.

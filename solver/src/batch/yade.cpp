@@ -13,6 +13,7 @@ namespace crossdem::batch::HWY_NAMESPACE {
 class ViscElPairLaw {
  public:
   static constexpr bool turn_alike = false;
+  static constexpr Signs signs{{-1.0, -1.0, -1.0, 1.0}, {1.0, 1.0, 1.0, 0.0}};
   ViscElPairLaw(const ContactParameters& parameters, double dt) : k_(parameters), dt_(dt) {}
 
   struct Approach {
@@ -85,7 +86,7 @@ class ViscElPairLaw {
     const Vector damping = hn::Set(lanes, k_.shear_damping);
     Vector drag_x = hn::Mul(damping, sliding_x);
     Vector drag_y = hn::Mul(damping, sliding_y);
-    if (!hn::AllFalse(lanes, slips)) {
+    if (HWY_UNLIKELY(!hn::AllFalse(lanes, slips))) {
       const Vector share = hn::Div(hn::Sqrt(cap_squared), hn::Sqrt(shear_squared));
       shear_x = hn::IfThenElse(slips, hn::Mul(shear_x, share), shear_x);
       shear_y = hn::IfThenElse(slips, hn::Mul(shear_y, share), shear_y);
@@ -99,7 +100,7 @@ class ViscElPairLaw {
     const Vector force_x = hn::IfThenElseZero(acts, hn::Add(hn::Add(push_x, shear_x), drag_x));
     const Vector force_y = hn::IfThenElseZero(acts, hn::Add(hn::Add(push_y, shear_y), drag_y));
     const Vector power = hn::Add(hn::Mul(force_x, velocity_x), hn::Mul(force_y, velocity_y));
-    return {force_x, force_y, hn::Neg(hn::Sub(hn::Mul(arm_i_x, force_y), hn::Mul(arm_i_y, force_x))),
+    return {force_x, force_y, hn::Sub(hn::Mul(arm_i_x, force_y), hn::Mul(arm_i_y, force_x)),
             hn::Sub(hn::Mul(arm_j_x, force_y), hn::Mul(arm_j_y, force_x)), hn::Mul(power, dt)};
   }
 

@@ -124,7 +124,7 @@ class BatchedStepper final : public Stepper {
       const auto [first, last] = share(blocks_.count(), thread, threads_);
       for (std::size_t block = first; block < last; ++block) function(block);
     };
-    const auto take_list = [&](std::size_t block) { blocks_.take_list(contacts(), block); };
+    const auto take_list = [&](std::size_t block) { blocks_.take_list(w, contacts(), block); };
     const auto give_back_list = [&](std::size_t block) { blocks_.give_back_list(contacts(), block); };
 
     take_particles();

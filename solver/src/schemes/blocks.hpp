@@ -35,7 +35,7 @@ class Blocks {
       typename Scheme::Group& group = groups_[i / batch::width];
       const std::size_t k = i % batch::width;
       const Vector2& at = w.particles.position[i];
-      discs_[i] = {.x = at.x(), .y = at.y(), .radius = w.particles.radius[i]};
+      discs_[i] = {.x = at.x(), .y = at.y(), .radius = w.particles.radius[i], .radius_again = w.particles.radius[i]};
       loads_[i] = {.work = w.contact_work[i]};
       group.angle[k] = w.particles.angle[i];
       group.spin[k] = w.particles.spin[i];
@@ -100,8 +100,14 @@ class Blocks {
     loads_.resize(discs_.size());
   }
 
-  void take_list(const OwnContacts& contacts, std::size_t block_number) {
+  void take_list(const World& w, const OwnContacts& contacts, std::size_t block_number) {
     const Block& block = blocks_[block_number];
+    if constexpr (Scheme::weight_comes_before_surfaces) {
+      for (std::size_t i = block.begin; i < block.end; ++i)
+        groups_[i / batch::width].weight[i % batch::width] = weight(w, i);
+      for (const auto& contact : block.on_surfaces)
+        groups_[contact.i / batch::width].weight[contact.i % batch::width] = 0.0;
+    }
     for (std::size_t i = block.begin; i < block.end; ++i) {
       groups_[i / batch::width].listed_x[i % batch::width] = contacts.listed_at()[i].x();
       groups_[i / batch::width].listed_y[i % batch::width] = contacts.listed_at()[i].y();
@@ -143,9 +149,13 @@ class Blocks {
                     const typename Scheme::OwnBar& bar, std::span<SurfaceTotals> sums, bool moves) {
     const Block& block = blocks_[block_number];
     scheme.add_pair_forces(w, {pairs_.data() + block.first_batch, block.batches()}, discs_.data(), loads_.data());
-    scheme.after_pairs(w, block.begin, block.end, loads_.data());
+    std::size_t latest = particles_;
     for (typename OwnContacts::OnSurface& contact : block.on_surfaces) {
       const std::size_t i = contact.i;
+      if constexpr (Scheme::weight_comes_before_surfaces) {
+        if (i != latest) loads_[i].force_y -= weight(w, i);
+        latest = i;
+      }
       scheme.surface(w, surfaces, bar, contact, discs_[i], groups_[i / batch::width], loads_[i],
                      sums[i / particles_in_sum]);
     }
@@ -172,6 +182,8 @@ class Blocks {
     std::span<typename OwnContacts::OnSurface> on_surfaces;
     [[nodiscard]] std::size_t batches() const { return whole(last_pair - first_pair); }
   };
+
+  static double weight(const World& w, std::size_t i) { return w.particles.mass[i] * w.gravity; }  // [N]
 
   /// Batches that hold so many.
   static constexpr std::size_t whole(std::size_t count) { return (count + batch::width - 1) / batch::width; }

@@ -23,7 +23,7 @@ class ConventionalBatches {
     const Particles& p = w.particles;
     disc.moves_x = p.velocity[i].x();
     disc.moves_y = p.velocity[i].y();
-    disc.turns = p.spin[i];
+    disc.turns = disc.turns_again = p.spin[i];
   }
 
   static void give_back_motion(World& w, std::size_t i, const batch::Disc& disc, const batch::Load& load) {

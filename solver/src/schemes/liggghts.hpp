@@ -196,7 +196,7 @@ class LiggghtsScheme {
     const double wall = surface == Surface::right ? surfaces.width : 0.0;
     const double gap = at > wall ? at - wall - radius : wall - at - radius;
     const double towards = wall - at;
-    return {side ? Vector2(-towards, 0.0) : Vector2(0.0, -towards), gap};
+    return {{side ? -towards : 0.0, side ? 0.0 : -towards}, gap};
   }
 
   /// Each triangle has its contact with its own shear spring. A disc that comes to lie over the other triangle of a
@@ -206,6 +206,7 @@ class LiggghtsScheme {
   static void bar_contacts(const OwnBar& bar, SurfaceMemory& memory, const DiscInMotion& disc, Touch touch) {
     std::array<bool, MeshBar::size> kept{};
     for (std::size_t k = 0; k < MeshBar::size; ++k) {
+      if (!bar.mesh().triangles()[k].may_meet(disc.centre, (1.0 + 2 * close_share) * disc.radius)) continue;
       const std::optional<MeshContact> at = bar.mesh().triangles()[k].contact(disc.centre);
       const double gap = at ? at->distance - disc.radius : disc.radius;
       if (!at || (gap > 0.0 && gap >= close_share * disc.radius)) continue;

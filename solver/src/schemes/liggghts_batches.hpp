@@ -15,6 +15,7 @@ class LiggghtsBatches : public ConventionalBatches<LiggghtsScheme<LiggghtsVerlet
   using Memory = LiggghtsScheme<LiggghtsVerlet>::PairMemory;
   using ConventionalBatches::ConventionalBatches;
   static constexpr bool marks = true;
+  static constexpr bool weight_comes_before_surfaces = true;
 
   static void take(const World& w, std::size_t i, batch::Disc& disc, Group& group, std::size_t k) {
     take_motion(w, i, disc);
@@ -23,9 +24,10 @@ class LiggghtsBatches : public ConventionalBatches<LiggghtsScheme<LiggghtsVerlet
     group.turn[k] = kick.per_moment;
   }
 
-  static void give_back(World& w, std::size_t i, const batch::Disc& disc, const batch::Load& load, const Group&,
-                        std::size_t) {
+  static void give_back(World& w, std::size_t i, const batch::Disc& disc, const batch::Load& load, const Group& group,
+                        std::size_t k) {
     give_back_motion(w, i, disc, load);
+    w.loads[i].force.y() -= group.weight[k];
     w.particles.displacement[i] = w.dt * w.particles.velocity[i];
   }
 
@@ -34,10 +36,6 @@ class LiggghtsBatches : public ConventionalBatches<LiggghtsScheme<LiggghtsVerlet
 
   void add_pair_forces(const World& w, std::span<Pairs> pairs, const batch::Disc* discs, batch::Load* loads) const {
     batch::add_liggghts_forces(pairs, discs, loads, w.particle_particle, w.dt, scheme().limit_force());
-  }
-
-  static void after_pairs(const World& w, std::size_t begin, std::size_t end, batch::Load* loads) {
-    for (std::size_t i = begin; i < end; ++i) loads[i].force_y += w.particles.mass[i] * (w.gravity * -1.0);
   }
 
   static batch::Moved move(const World& w, std::size_t particles, Group* groups, batch::Disc* discs,

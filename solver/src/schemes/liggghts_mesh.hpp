@@ -63,6 +63,14 @@ class MeshTriangle {
     for (Vector3& corner : node_) corner.y() += dy;
   }
 
+  /// Whether a disc within `reach` [m] of its centre might meet the triangle: cheap, and never wrongly false.
+  [[nodiscard]] bool may_meet(const Vector2& centre, double reach) const {
+    const Vector2 low = node_[0].head<2>().cwiseMin(node_[1].head<2>()).cwiseMin(node_[2].head<2>());
+    const Vector2 high = node_[0].head<2>().cwiseMax(node_[1].head<2>()).cwiseMax(node_[2].head<2>());
+    return centre.x() > low.x() - reach && centre.x() < high.x() + reach && centre.y() > low.y() - reach &&
+           centre.y() < high.y() + reach;
+  }
+
   /// None where the closest point is on an edge that does not act, or at a node: these are out of the discs' reach.
   [[nodiscard]] std::optional<MeshContact> contact(const Vector2& disc_centre) const {
     const Vector3 centre(disc_centre.x(), disc_centre.y(), 0.0);

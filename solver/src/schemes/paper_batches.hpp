@@ -24,6 +24,7 @@ class PaperBatches {
   };
   static constexpr bool moves_first = false;
   static constexpr bool marks = false;
+  static constexpr bool weight_comes_before_surfaces = false;
   static constexpr double share_before = 0.0;
   static constexpr double share_after = 1.0;
 
@@ -38,7 +39,7 @@ class PaperBatches {
     const Particles& p = w.particles;
     disc.moves_x = p.displacement[i].x();
     disc.moves_y = p.displacement[i].y();
-    disc.turns = p.radius[i] * p.rotation[i];
+    disc.turns = disc.turns_again = p.radius[i] * p.rotation[i];
     group.velocity_x[k] = p.velocity[i].x();
     group.velocity_y[k] = p.velocity[i].y();
     group.rotation[k] = p.rotation[i];
@@ -64,8 +65,6 @@ class PaperBatches {
   static void add_pair_forces(const World& w, std::span<Pairs> pairs, const batch::Disc* discs, batch::Load* loads) {
     batch::add_tanaka_forces(pairs, discs, loads, w.particle_particle, w.dt);
   }
-
-  static void after_pairs(const World&, std::size_t, std::size_t, batch::Load*) {}
 
   static void surface(const World& w, const Surfaces& surfaces, const OwnBar&, PaperContacts::OnSurface& contact,
                       const batch::Disc& disc, const Group& group, batch::Load& load, SurfaceTotals& totals) {

@@ -149,14 +149,13 @@ class YadeScheme {
 
   /// Ig2_Wall_Sphere_ScGeom: the contact point is on the wall.
   static Meeting meet_wall(const Surfaces& surfaces, Surface surface, const Vector2& centre, double radius) {
-    switch (surface) {
-      case Surface::left:
-        return {{1.0, 0.0}, -(std::abs(centre.x()) - radius), {0.0, centre.y()}};
-      case Surface::right:
-        return {{-1.0, 0.0}, -(std::abs(centre.x() - surfaces.width) - radius), {surfaces.width, centre.y()}};
-      default:
-        return {{0.0, 1.0}, -(std::abs(centre.y()) - radius), {centre.x(), 0.0}};
-    }
+    const bool side = surface != Surface::floor;
+    const double at = side ? centre.x() : centre.y();
+    const double wall = surface == Surface::right ? surfaces.width : 0.0;
+    const double inwards = surface == Surface::right ? -1.0 : 1.0;
+    return {{side ? inwards : 0.0, side ? 0.0 : inwards},
+            -(std::abs(at - wall) - radius),
+            {side ? wall : centre.x(), side ? centre.y() : wall}};
   }
 
   /// Ig2_Box_Sphere_ScGeom, for a centre outside of the box: the contact point is half-way between both surfaces.

@@ -14,6 +14,7 @@ class YadeBatches : public ConventionalBatches<YadeScheme<YadeLeapFrog>> {
   using Pairs = batch::YadePairs;
   using ConventionalBatches::ConventionalBatches;
   static constexpr bool marks = false;
+  static constexpr bool weight_comes_before_surfaces = false;
 
   static void take(const World& w, std::size_t i, batch::Disc& disc, Group& group, std::size_t k) {
     take_motion(w, i, disc);
@@ -39,8 +40,6 @@ class YadeBatches : public ConventionalBatches<YadeScheme<YadeLeapFrog>> {
   void add_pair_forces(const World& w, std::span<Pairs> pairs, const batch::Disc* discs, batch::Load* loads) const {
     batch::add_yade_forces(pairs, discs, loads, scheme().pairs(), w.dt);
   }
-
-  static void after_pairs(const World&, std::size_t, std::size_t, batch::Load*) {}
 
   static batch::Moved move(const World& w, std::size_t particles, Group* groups, batch::Disc* discs,
                            batch::Load* loads) {
