@@ -23,7 +23,7 @@ class Native(Engine):
     program = "crossdem-solver"
     samples_file = f"{OUTPUT}/resistance.csv"
     kept_output = ("ledger.csv", "run.json")
-    cost_s = 5e-8
+    cost_s = 1e-8
     by_hand = "crossdem-solver lies in build/release/solver of the crossdem checkout: put that folder on the PATH."
 
     def executable(self) -> str:
