@@ -62,8 +62,8 @@ class Packing:
             raise PackingError(f"{folder} holds no packing: {error}") from error
 
 
-def make_packing(case: Case, seed: int, folder: Path) -> Packing:
-    """The packing in `folder`, made there by the solver unless it is there already.
+def make_packing(case: Case, seed: int, folder: Path, threads: int = 1) -> Packing:
+    """The packing in `folder`, made there by the solver, on at most so many threads, unless it is there already.
 
     It appears whole or not at all. Raises CaseError when the bed cannot be made from this case,
     SolverError when the solver fails.
@@ -76,7 +76,13 @@ def make_packing(case: Case, seed: int, folder: Path) -> Packing:
     folder.parent.mkdir(parents=True, exist_ok=True)
     unfinished = Path(mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
     try:
-        arguments = ["pack", "-", f"--seed={seed}", f"--output={unfinished}"]
+        arguments = [
+            "pack",
+            "-",
+            f"--seed={seed}",
+            f"--output={unfinished}",
+            f"--threads={threads}",
+        ]
         done = call_solver([*arguments, f"--file-name={case.file_name}"], stdin=case.canonical)
         if done.returncode:
             raise CaseError(messages(done.stderr))

@@ -18,16 +18,16 @@ LONG_S = 1.0  # runs for which that can be said: a short one waits for its files
 
 
 def rows(bench: Bench) -> list[tuple[str, ...]]:
-    """Of each engine on each workload: TITLES; medians and, in brackets, quartiles of the rounds."""
+    """Of each contender on each workload: TITLES; medians and, in brackets, quartiles of the rounds."""
     return [_row(row) for row in bench.rows()]
 
 
 def workload_lines(bench: Bench) -> list[str]:
     """ "bar: 944 particles, 114,000 steps of 50.0 µs": what each engine ran."""
-    said: dict[tuple[str, str], list[str]] = {}  # engines by workload and what they ran of it
+    said: dict[tuple[str, str], list[str]] = {}  # contenders by workload and what they ran of it
     for row in bench.rows():
         ran = f"{row.particles:,} particles, {row.steps:,} steps of {number(1e6 * row.step_s)} µs"
-        said.setdefault((row.workload, ran), []).append(row.engine)
+        said.setdefault((row.workload, ran), []).append(row.contender)
     alone = Counter(workload for workload, _ in said)
     return [
         f"{workload}: {ran}" + (f" ({listed(engines)})" if alone[workload] > 1 else "")
@@ -60,7 +60,7 @@ def machine() -> dict:
 def machine_line(about: dict) -> str:
     named = about["processor"] or about["machine"]
     flags = f", {' '.join(about['flags'])}" if about["flags"] else ""
-    return f"{named}, {plural(about['cores'], 'core')}{flags}, {about['libc']}; every engine on one core"
+    return f"{named}, {plural(about['cores'], 'core')}{flags}, {about['libc']}; on one thread where none are named"
 
 
 def record(bench: Bench, about: dict) -> dict:
@@ -70,8 +70,8 @@ def record(bench: Bench, about: dict) -> dict:
         "engines": bench.versions,
         "left_out": bench.left_out,
         "failures": [
-            {"workload": workload, "engine": engine, "why": why}
-            for (workload, engine), why in bench.failures.items()
+            {"workload": workload} | asdict(contender) | {"why": why}
+            for (workload, contender), why in bench.failures.items()
         ],
         "repeats": bench.repeats,
         "workloads": [
@@ -85,7 +85,7 @@ def record(bench: Bench, about: dict) -> dict:
 def _row(row: Row) -> tuple[str, ...]:
     return (
         row.workload,
-        row.engine,
+        row.contender,
         number(row.wall_s.median),
         spread(row.ns_per_particle_step),
         spread(row.ratio) if row.ratio else DASH,
