@@ -38,7 +38,6 @@ struct World {
   double gravity = 0.0;  // [m/s^2]
   double dt = 0.0;       // [s]
   long steps = 0;
-  std::size_t threads = 1;  // at most
 
   std::vector<Load> loads;  // by contacts, at the latest evaluation
   SurfaceTotals totals;     // at the latest evaluation
@@ -47,6 +46,7 @@ struct World {
   std::vector<double> contact_work;
   MomentumLedger momentum_ledger;
   EnergyLedger energy_ledger;
+  std::size_t threads = 1;  // that may move the particles, at most
 
   Vector2 momentum_at_start = Vector2::Zero();  // [N s]
   double kinetic_at_start = 0.0;                // [J]

@@ -12,7 +12,8 @@ from crossdem.adapters.case import varied
 from crossdem.compare import cli, twin_schemes
 from crossdem.compare.twin_schemes import TWIN_SCHEMES
 
-ONE_CHECK = """check=[{quantity="mean_resistance_N", kind="relative", margin=0.1, seed_scatter=0.06, reason="one"}]"""
+# What a heap of 40 discs says alike in both codes: the tests are of motion, not of what one chaotic packing happens to do.
+ONE_CHECK = """check=[{quantity="contacts_per_particle", kind="relative", margin=0.2, seed_scatter=0.05, reason="one"}]"""
 OVERRIDES = [word for text in (*SMALL, ONE_CHECK) for word in ("--set", text)]
 WITH_SCHEME = sorted(TWIN_SCHEMES)
 

@@ -10,9 +10,9 @@ from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run import RunRequest, run_all
 from crossdem.compare.ensemble import Ensemble
 
-# Wide: one bed, and not a thousandth of a second in which it would be the same in two codes. For the mean of
-# the last two thirds of the first centimetre, where the three codes give about 0.11 N on this bed.
-LEAST_RESISTANCE_N, LARGEST_RESISTANCE_N = 0.05, 0.2
+# Wide, as it is one bed: the means over the first centimetre of the 384 recorded runs, on 32 beds, lie between 0.04 and
+# 0.20 N. This is that of its last two thirds, half as large again; the three codes give 0.1 to 0.27 N on this bed.
+LEAST_RESISTANCE_N, LARGEST_RESISTANCE_N = 0.06, 0.3
 
 
 @pytest.fixture(scope="module")

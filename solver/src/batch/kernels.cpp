@@ -3,7 +3,9 @@
 #include <stdexcept>
 #include <string>
 
-// Highway compiles what follows once for each set of instructions, and chooses when the program starts.
+// Highway compiles what follows once for each set of instructions, and chooses when the program starts. Vectors of
+// arm64 whose length is not known here cannot be members of a struct: there it is Neon that is used.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "batch/kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -128,10 +130,15 @@ HWY_INLINE Between between(const std::uint32_t* i, const std::uint32_t* j, const
   };
   const auto even = [&](std::size_t k) HWY_ATTR { return hn::InterleaveLower(lanes, d[k], d[k + 1]); };
   const auto odd = [&](std::size_t k) HWY_ATTR { return hn::InterleaveUpper(lanes, d[k], d[k + 1]); };
-  Between all;
-  columns({even(0), even(2), even(4), even(6)}, all.x, all.dx, all.roll);
-  columns({odd(0), odd(2), odd(4), odd(6)}, all.y, all.dy, all.reach);
-  return all;
+  Vector x;
+  Vector y;
+  Vector dx;
+  Vector dy;
+  Vector roll;
+  Vector reach;
+  columns({even(0), even(2), even(4), even(6)}, x, dx, roll);
+  columns({odd(0), odd(2), odd(4), odd(6)}, y, dy, reach);
+  return {x, y, dx, dy, roll, reach};
 }
 #else
 HWY_INLINE Between between(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
@@ -141,22 +148,27 @@ HWY_INLINE Between between(const std::uint32_t* i, const std::uint32_t* j, const
   const auto second = [&](const std::uint32_t* of) {
     return [discs, of](std::size_t k) HWY_ATTR { return &discs[of[k]].roll; };
   };
+  Vector xi;
+  Vector yi;
+  Vector dxi;
+  Vector dyi;
   Vector x;
   Vector y;
   Vector dx;
   Vector dy;
-  Between all;
-  load_columns(first(i), x, y, dx, dy);
-  load_columns(first(j), all.x, all.y, all.dx, all.dy);
-  all.x = hn::Sub(all.x, x);
-  all.y = hn::Sub(all.y, y);
-  all.dx = hn::Sub(all.dx, dx);
-  all.dy = hn::Sub(all.dy, dy);
-  load_columns(second(i), x, y, dx, dy);
-  load_columns(second(j), all.roll, all.reach, dx, dy);
-  all.roll = hn::Add(all.roll, x);
-  all.reach = hn::Add(all.reach, y);
-  return all;
+  load_columns(first(i), xi, yi, dxi, dyi);
+  load_columns(first(j), x, y, dx, dy);
+  x = hn::Sub(x, xi);
+  y = hn::Sub(y, yi);
+  dx = hn::Sub(dx, dxi);
+  dy = hn::Sub(dy, dyi);
+  Vector roll_i;
+  Vector radius_i;
+  Vector roll;
+  Vector reach;
+  load_columns(second(i), roll_i, radius_i, xi, yi);
+  load_columns(second(j), roll, reach, xi, yi);
+  return {x, y, dx, dy, hn::Add(roll, roll_i), hn::Add(reach, radius_i)};
 }
 #endif
 
@@ -168,9 +180,9 @@ struct Approach {
 };
 
 HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
-  Approach a;
-  a.between = between(i, j, discs);
-  a.distance_squared = hn::Add(hn::Mul(a.between.x, a.between.x), hn::Mul(a.between.y, a.between.y));
+  Approach a{between(i, j, discs), hn::Zero(lanes), hn::Zero(lanes)};
+  const Between& b = a.between;
+  a.distance_squared = hn::Add(hn::Mul(b.x, b.x), hn::Mul(b.y, b.y));
   a.inverse = hn::Div(hn::Set(lanes, 1.0), hn::Sqrt(a.distance_squared));
   return a;
 }

@@ -13,7 +13,8 @@ constexpr std::size_t fewest_particles = 4096;  // a thread: with less to do, th
 constexpr double caution = 1.5;
 
 /// Part number `part` of `parts` of [0, count), as multiples of `unit` where they end before `count`.
-std::pair<std::size_t, std::size_t> share(std::size_t count, std::size_t part, std::size_t parts, std::size_t unit = 1) {
+std::pair<std::size_t, std::size_t> share(std::size_t count, std::size_t part, std::size_t parts,
+                                          std::size_t unit = 1) {
   const std::size_t units = (count + unit - 1) / unit;
   const auto end_of = [&](std::size_t number) { return std::min(units * number / parts * unit, count); };
   return {end_of(part), end_of(part + 1)};
@@ -24,8 +25,8 @@ std::pair<std::size_t, std::size_t> share(std::size_t count, std::size_t part, s
 BatchedPaperStepper::BatchedPaperStepper(const Readings& readings, World& world)
     : plain_(PaperScheme{}, readings, world),
       blocks_(world.particles.count()),
-      threads_(std::clamp<std::size_t>(world.particles.count() / fewest_particles, 1,
-                                       std::min(world.threads, most_ahead))),
+      threads_(
+          std::clamp<std::size_t>(world.particles.count() / fewest_particles, 1, std::min(world.threads, most_ahead))),
       barrier_(threads_) {
   world.loads = {};  // the blocks have their own
 }

@@ -12,8 +12,8 @@
 
 namespace crossdem {
 
-/// Makes up to most_ahead steps at a time as a wave through the blocks: block n makes the first of them, then block n - 1
-/// the second, n - 2 the third and so on, while all these are near the processor. Threads share out the steps, one
+/// Makes up to most_ahead steps at a time as a wave through the blocks: block n makes the first of them, then block n -
+/// 1 the second, n - 2 the third and so on, while all these are near the processor. Threads share out the steps, one
 /// behind the other in the wave.
 class BatchedPaperStepper final : public Stepper {
  public:
@@ -24,14 +24,14 @@ class BatchedPaperStepper final : public Stepper {
   [[nodiscard]] double spring_energy(const World& world) const override { return plain_.spring_energy(world); }
 
  private:
-  static constexpr std::size_t most_ahead = 8;
+  static constexpr std::size_t most_ahead = 16;
 
   /// One step of a wave.
   struct Level {
-    Surfaces surfaces;                // during the step
-    std::vector<SurfaceTotals> sums;  // for particles_in_sum at a time
-    batch::Moved moved;
     alignas(64) std::atomic<std::size_t> blocks_done = 0;
+    batch::Moved moved;
+    std::vector<SurfaceTotals> sums;  // for particles_in_sum at a time
+    Surfaces surfaces;                // during the step
   };
 
   /// What a wave that went too far goes back to. The particles and pairs of the world are as they were then.
@@ -67,7 +67,7 @@ class BatchedPaperStepper final : public Stepper {
   Checkpoint checkpoint_;
   Next next_ = Next::end;
   bool went_too_far_ = false;  // in the latest wave: further than the list allows
-  bool careful_ = false;  // one step at a time until the next list
+  bool careful_ = false;       // one step at a time until the next list
   std::exception_ptr failure_;
 };
 

@@ -8,7 +8,8 @@ namespace crossdem {
 namespace {
 
 constexpr double nowhere = 1e9;  // [m]
-/// Particles in a block, at least: with their contacts they fit into the nearest cache, where they are read twice a step.
+/// Particles in a block, at least: with their contacts they fit into the nearest cache, where they are read twice a
+/// step.
 constexpr std::size_t particles_in_block = 256;
 static_assert(particles_in_block % batch::width == 0);
 
@@ -18,9 +19,7 @@ std::size_t whole(std::size_t count) { return (count + batch::width - 1) / batch
 
 PaperBlocks::PaperBlocks(std::size_t particles) : particles_(particles) {
   groups_.resize(whole(particles));
-  discs_.resize(groups_.size() * batch::width + 2);
-  discs_.end()[-2].x = nowhere;
-  discs_.end()[-1].x = -nowhere;
+  discs_.resize(groups_.size() * batch::width);
   loads_.resize(discs_.size());
 }
 
@@ -78,7 +77,8 @@ void PaperBlocks::cut(PaperContacts& contacts) {
     const auto of_later = [end](const auto& contact) { return contact.i < end; };
     const auto first_on_surface = on_surface;
     on_surface = std::partition_point(on_surface, contacts.on_surfaces().end(), of_later);
-    const auto last_pair = std::partition_point(pairs.begin() + static_cast<std::ptrdiff_t>(pair), pairs.end(), of_later);
+    const auto last_pair =
+        std::partition_point(pairs.begin() + static_cast<std::ptrdiff_t>(pair), pairs.end(), of_later);
     blocks_.push_back({.begin = begin,
                        .end = end,
                        .first_pair = pair,
@@ -89,6 +89,12 @@ void PaperBlocks::cut(PaperContacts& contacts) {
     batches += blocks_.back().batches();
   }
   pairs_.resize(batches);
+  discs_.resize(lone_disc(blocks_.size()));
+  for (std::size_t number = 0; number < blocks_.size(); ++number) {
+    discs_[lone_disc(number)].x = nowhere;
+    discs_[lone_disc(number) + 1].x = -nowhere;
+  }
+  loads_.resize(discs_.size());
 }
 
 void PaperBlocks::take_list(const PaperContacts& contacts, std::size_t block_number) {
@@ -102,7 +108,7 @@ void PaperBlocks::take_list(const PaperContacts& contacts, std::size_t block_num
   for (std::size_t n = 0; n < places; ++n) {
     batch::Pairs& pairs = pairs_[block.first_batch + n / batch::width];
     const std::size_t k = n % batch::width;
-    const auto lone = static_cast<std::uint32_t>(discs_.size() - 2);
+    const auto lone = static_cast<std::uint32_t>(lone_disc(block_number));
     const PaperContacts::Pair pair =
         n < taken ? contacts.pairs()[block.first_pair + n] : PaperContacts::Pair{lone, lone + 1, {}};
     pairs.i[k] = pair.i;

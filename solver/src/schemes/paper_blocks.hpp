@@ -1,5 +1,6 @@
 #pragma once
-// A world in batches, cut into blocks that can be stepped one after the other, each many steps ahead of the next but one.
+// A world in batches, cut into blocks that can be stepped one after the other, each many steps ahead of the next but
+// one.
 
 #include <span>
 #include <vector>
@@ -10,10 +11,10 @@
 
 namespace crossdem {
 
-/// By the paper's scheme with the default readings. A block is a run of particles, with the contacts that list one of them
-/// first; the partners of its pairs are in it or in the next one. So a block can make step n as soon as the next one has
-/// made step n - 1 and the one before it step n, and every particle has its sum in the order of the list, whichever way
-/// through blocks and steps is taken.
+/// By the paper's scheme with the default readings. A block is a run of particles, with the contacts that list one of
+/// them first; the partners of its pairs are in it or in the next one. So a block can make step n as soon as the next
+/// one has made step n - 1 and the one before it step n, and every particle has its sum in the order of the list,
+/// whichever way through blocks and steps is taken.
 class PaperBlocks {
  public:
   explicit PaperBlocks(std::size_t particles);
@@ -45,11 +46,13 @@ class PaperBlocks {
     [[nodiscard]] std::size_t batches() const { return (last_pair - first_pair + batch::width - 1) / batch::width; }
   };
 
+  /// The first of two discs that no other is near, with which the pairs of a block are filled up to whole batches.
+  [[nodiscard]] std::size_t lone_disc(std::size_t block) const { return groups_.size() * batch::width + 2 * block; }
   void surface_load(const World& world, const Surfaces& surfaces, PaperContacts::OnSurface& contact,
                     SurfaceTotals& totals);
 
   std::size_t particles_;
-  LargeArray<batch::Disc> discs_;  // of whole groups, and two that no other is near
+  LargeArray<batch::Disc> discs_;  // of whole groups, and lone ones
   LargeArray<batch::Load> loads_;
   LargeArray<batch::Group> groups_;
   LargeArray<batch::Pairs> pairs_;
