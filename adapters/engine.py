@@ -65,7 +65,7 @@ class Code(ABC):
         return None
 
     def complaint(self, log: str) -> str | None:
-        """The reason for a failure in the engine's own words, if its log gives one."""
+        """The reason for a failure in the code's own words, if its log gives one."""
         return None
 
     def schedule(self, case: Case) -> Schedule:

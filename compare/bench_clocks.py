@@ -18,8 +18,7 @@ from crossdem.adapters.engines import get_engine
 from crossdem.adapters.lammps import Lammps
 
 YADE_CLOCK = Path(__file__).with_name("bench_yade_clock.py")
-# LIGGGHTS' and LAMMPS' own, from MPI_Wtime after all setting up to the end of the last step; finish.cpp writes it after
-# every run.
+# LIGGGHTS' and LAMMPS' own, by MPI_Wtime from the end of all setting up to the end of the last step.
 LOOP_TIME = re.compile(
     r"^Loop time of (\S+) on \d+ procs for (\d+) steps with \d+ atoms", re.MULTILINE
 )
@@ -78,9 +77,8 @@ def _json_line(log: str) -> Told:
 
 
 def _loop_time(log: str) -> Told:
-    wall_s, steps = LOOP_TIME.findall(log)[
-        -1
-    ]  # LIGGGHTS' first is that of `run 0`, the packing's forces
+    # LIGGGHTS' first is that of `run 0`, the packing's forces.
+    wall_s, steps = LOOP_TIME.findall(log)[-1]
     return Told(int(steps), float(wall_s))
 
 

@@ -54,6 +54,7 @@ def _bars(axes: Axes, rows: list[Row], value: str, label: str) -> None:
     axes.set_yticks(range(len(workloads)), workloads)
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
+    axes.set_axisbelow(True)
     axes.tick_params(axis="y", length=0)
     axes.set_xlim(0, ROOM * max(getattr(row, value).high for row in rows))
     axes.set_xlabel(label)

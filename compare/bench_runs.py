@@ -54,7 +54,7 @@ def run_bench(
 def _present(engines: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
     """By name: the versions of the engines that are here, and why the others are left out."""
     versions, left_out = {}, {}
-    for name in engines:
+    for name in dict.fromkeys(engines):
         try:
             code = CLOCKS[name].code
             compiler = code.compiler()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
@@ -14,9 +13,9 @@ from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.workspace import Workspace
 
 from .bench import Bench, Contender, Row, Spread
-from .bench_beds import bed_folder
+from .bench_beds import Settling, settling
 from .bench_runs import run_bench
-from .bench_workloads import Workload, static
+from .bench_workloads import static
 
 SMALLEST, LARGEST = 1000, 1_000_000
 EMPTY = 1  # particle of the run whose memory is that of the program itself
@@ -40,8 +39,7 @@ class Size:
     steps: int
     speeds: tuple[Speed, ...]  # in ascending order of the threads
     bytes_per_particle: float  # on the fewest threads: peak of the process less that of one particle's, over the particles
-    packing_s: float | None  # wall time in which its bed was settled, once; None where that is not known
-    packing_threads: int | None  # on at most so many threads; None where that is not known
+    settling: Settling | None  # None where another build of the solver made its bed
 
 
 def sizes_up_to(largest: int) -> list[int]:
@@ -68,12 +66,12 @@ def run_scaling(
     ]
     contenders = [Contender(REFERENCE, count) for count in sorted(threads)]
     bench = run_bench(case, workloads, contenders, repeats, workspace, console)
-    settled = {workload.name: _settled(workload, workspace) for workload in workloads}
+    settled = {workload.name: settling(workload.bed, workspace) for workload in workloads}
     return bench, sizes(bench, settled)
 
 
-def sizes(bench: Bench, settled: dict[str, dict]) -> list[Size]:
-    """Of the workloads that were timed, the first of which is that of one particle; `settled` says how each bed was made."""
+def sizes(bench: Bench, settled: dict[str, Settling | None]) -> list[Size]:
+    """Of the workloads that were timed on every number of threads; the first is that of one particle."""
     rows: dict[str, list[Row]] = {}
     for row in bench.rows():
         rows.setdefault(row.workload, []).append(row)
@@ -87,10 +85,10 @@ def sizes(bench: Bench, settled: dict[str, dict]) -> list[Size]:
             of_bed[0].steps,
             tuple(_speed(bench, on_threads) for on_threads in of_bed),
             (_peak(bench, of_bed[0]) - empty) / of_bed[0].particles,
-            settled[of_bed[0].workload].get("wall_s"),
-            settled[of_bed[0].workload].get("threads"),
+            settled[of_bed[0].workload],
         )
         for of_bed in others
+        if len(of_bed) == len(first)
     ]
 
 
@@ -102,11 +100,3 @@ def _speed(bench: Bench, row: Row) -> Speed:
 def _peak(bench: Bench, row: Row) -> float:
     """[bytes]"""
     return median(timing.peak_memory_bytes for timing in bench.of(row.key))
-
-
-def _settled(workload: Workload, workspace: Workspace) -> dict:
-    try:
-        made = bed_folder(workload.bed, workspace).with_suffix(".json").read_bytes()
-    except FileNotFoundError:  # killed between the bed and the note
-        return {}
-    return json.loads(made)

@@ -19,7 +19,7 @@ from .bench_scaling import Size
 from .colours import engine_styles
 from .drawing import png_figure
 from .pages import write_record
-from .wording import DASH, number, plural
+from .wording import listed, number, plural
 
 
 def write_scaling(
@@ -36,6 +36,8 @@ def write_scaling(
 def print_scaling(bench: Bench, sizes: list[Size], folder: Path, about: dict) -> None:
     console = wide_console()
     console.print(text_table(_titles(sizes), [_row(size) for size in sizes]))
+    for line in _settling_lines(sizes):
+        console.print(line, highlight=False, soft_wrap=True)
     print_notes(bench, about, console)
     console.print(f"Files: {folder / 'scaling.json'}, scaling.png", soft_wrap=True)
 
@@ -45,7 +47,7 @@ def _titles(sizes: list[Size]) -> tuple[str, ...]:
     speeds = [f"ns per particle-step, {plural(first.threads, 'thread')}"] if first else []
     for speed in others:
         speeds += [f"{plural(speed.threads, 'thread')}", "speed-up"]
-    return ("particles", "settling, s", "bytes per particle", "steps", *speeds)
+    return ("particles", "bytes per particle", "steps", *speeds)
 
 
 def _row(size: Size) -> tuple[str, ...]:
@@ -55,11 +57,27 @@ def _row(size: Size) -> tuple[str, ...]:
         speeds += [tables.spread(speed.ns_per_particle_step), tables.spread(speed.speed_up)]
     return (
         f"{size.particles:,}",
-        DASH if size.packing_s is None else number(size.packing_s),
         f"{size.bytes_per_particle:.0f}",
         f"{size.steps:,}",
         *speeds,
     )
+
+
+def _settling_lines(sizes: list[Size]) -> list[str]:
+    """ "settled on 2 threads: 1,000 particles in 0.197 s, 13.0 ns per particle-step"."""
+    known = [(f"{size.particles:,}", size.settling) for size in sizes]
+    said = [
+        f"settled on {plural(made.threads, 'thread')}: {particles} particles in {number(made.wall_s)} s, "
+        f"{number(made.ns_per_particle_step)} ns per particle-step"
+        for particles, made in known
+        if made
+    ]
+    if unknown := [particles for particles, made in known if not made]:
+        said.append(
+            f"settled by another build of the solver: {listed(unknown)} particles; in a new folder of "
+            "--out they are settled and timed anew"
+        )
+    return said
 
 
 def _draw(sizes: list[Size], figure: Figure) -> None:

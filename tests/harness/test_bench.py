@@ -11,15 +11,22 @@ from small_case import small_file
 from test_cli import _without_engines
 
 from crossdem.adapters import packing
-from crossdem.adapters.case import load_case
+from crossdem.adapters.case import load_case, varied_table
 from crossdem.adapters.engine import EngineFailure
 from crossdem.adapters.engines import DEFAULT_ENGINES, get_engine
 from crossdem.adapters.solver import SolverError
 from crossdem.adapters.workspace import Workspace
-from crossdem.compare import bench_command, bench_report, bench_runs, bench_scaling, bench_tables
+from crossdem.compare import (
+    bench_beds,
+    bench_command,
+    bench_report,
+    bench_runs,
+    bench_scaling,
+    bench_tables,
+)
 from crossdem.compare.bench import Bench, Contender, Spread, Timing
-from crossdem.compare.bench_beds import bed
-from crossdem.compare.bench_clocks import timed_command, told
+from crossdem.compare.bench_beds import Settling, bed, settling
+from crossdem.compare.bench_clocks import CLOCKS, timed_command, told
 from crossdem.compare.bench_scaling import sizes_up_to
 from crossdem.compare.bench_workloads import Workload, bar, static, static_name, time_to_solution
 from crossdem.compare.runs import cores
@@ -141,6 +148,19 @@ def test_threads_are_told_to_the_native_solver(paper, tmp_path, monkeypatch):
     assert f"--threads={cores()}" in asked
 
 
+def test_a_bed_that_another_build_of_the_solver_made_tells_no_time(paper, tmp_path, monkeypatch):
+    case, workspace = static(30)(paper, False).bed, Workspace(tmp_path / "out")
+    bed(case, workspace, SimpleNamespace(say=lambda text: None))
+    made = settling(case, workspace)
+    assert made.wall_s > 0 and made.threads == cores()
+    monkeypatch.setattr(bench_beds, "solver_sha256", lambda: "that of another")
+    assert settling(case, workspace) is None
+    bed(case, workspace, SimpleNamespace(say=lambda text: None))  # is kept nevertheless
+    assert settling(case, workspace) is None
+    monkeypatch.undo()
+    assert settling(case, workspace) == made
+
+
 LOOP = "Loop time of {} on 1 procs for {} steps with 944 atoms, finish time Sun Nov 22 10:10:37\n"
 
 
@@ -194,11 +214,10 @@ def test_memory_per_particle_is_above_that_of_the_program(paper):
         timing("native", 0, 1.0, f"static-{n}", particles=n, peak_memory_bytes=10_000_000 + 500 * n)
         for n in (1, 1000, 10_000)
     ]
-    settled = {"static-1": {}, "static-1000": {"wall_s": 1.5, "threads": 2}, "static-10000": {}}
+    made = Settling(1.5, 2, 62.5, "")
+    settled = {"static-1": None, "static-1000": made, "static-10000": None}
     found = bench_scaling.sizes(bench(paper, timings), settled)
-    assert [(size.particles, size.packing_s, size.packing_threads) for size in found] == [
-        *((1000, 1.5, 2), (10_000, None, None))
-    ]
+    assert [(size.particles, size.settling) for size in found] == [(1000, made), (10_000, None)]
     assert [size.bytes_per_particle for size in found] == [
         pytest.approx(499.5),
         pytest.approx(500, rel=1e-3),
@@ -215,12 +234,14 @@ def test_the_speed_up_is_that_within_a_round_over_the_fewest_threads(paper):
         for threads in (1, 2)
     ]
     timings = [replace(t, peak_memory_bytes=t.threads * t.particles * 100) for t in timings]
-    [size] = bench_scaling.sizes(bench(paper, timings), {"static-1000": {}})
+    [size] = bench_scaling.sizes(bench(paper, timings), {"static-1000": None})
     assert [(s.threads, s.speed_up.low, s.speed_up.high) for s in size.speeds] == [
         *((1, 1.0, 1.0), (2, 2.0, 2.0))
     ]
     assert size.speeds[0].ns_per_particle_step.high == pytest.approx(1.75e9 / 2e6)
     assert size.bytes_per_particle == pytest.approx(99.9)
+    on_two_threads_it_failed = [t for t in timings if (t.particles, t.threads) != (1000, 2)]
+    assert bench_scaling.sizes(bench(paper, on_two_threads_it_failed), {}) == []
 
 
 def test_every_bed_is_stepped_often_enough_to_count(paper):
@@ -276,7 +297,9 @@ def test_a_quick_run_over_the_number_of_particles(tmp_path):
     [size] = found["sizes"]
     assert size["steps"] == 3000
     assert size["particles"] == 1000 and 50 < size["bytes_per_particle"] < 5000
-    assert 0 < size["packing_s"] < 60 and size["packing_threads"] == cores()
+    assert 0 < size["settling"]["wall_s"] < 60 and size["settling"]["threads"] == cores()
+    assert size["settling"]["ns_per_particle_step"] > 1
+    assert "particles in" in ended.stdout
     assert [speed["threads"] for speed in size["speeds"]] == [1, 2]
     assert all(speed["ns_per_particle_step"]["median"] > 1 for speed in size["speeds"])
     assert {(t["engine"], t["threads"]) for t in found["timings"]} == {("native", 1), ("native", 2)}
@@ -311,6 +334,21 @@ def test_lammps_is_timed_where_it_is_and_asked_of_nobody(tmp_path, monkeypatch):
         return bench_command.bench_engines(case, ["bar"], engines, [1], 1, True, workspace, None)
 
     assert (ended(None), ended(["native", "lammps"])) == (0, 3)
+
+
+def test_lammps_refuses_what_its_deck_cannot_say(paper):
+    code = CLOCKS["lammps"].code
+    assert code.unsupported(paper) == []
+    undamped = {
+        "particle_wall": paper.resolved["contact"]["particle_wall"] | {"normal_damping_N_s_m": 0.0}
+    }
+    refused = varied_table(
+        paper,
+        scheme={"name": "liggghts", "attraction": "clipped"},
+        contact=paper.resolved["contact"] | undamped,
+    )
+    clipped, damping = code.unsupported(refused)
+    assert "scheme.attraction" in clipped and "contact.particle_wall" in damping
 
 
 def test_an_engine_that_tells_no_time_is_named_and_not_counted(fake, tmp_path):
