@@ -52,8 +52,8 @@ class Timing:
         return 1e9 * self.wall_s / (self.particles * self.steps)
 
     @property
-    def core_share(self) -> float:
-        """Cores in use, over the whole process: clearly below 1 where it had to wait for one, also on several threads."""
+    def cores(self) -> float:
+        """In use on average, over the whole process: clearly below 1 where it had to wait for one."""
         return self.process_cpu_s / self.process_wall_s
 
 

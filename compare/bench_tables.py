@@ -8,12 +8,12 @@ from dataclasses import asdict
 
 from crossdem.adapters.machine import machine_facts, processor
 
-from .bench import Bench, Row, Spread
+from .bench import Bench, Row, Spread, Timing
 from .runs import cores
 from .wording import DASH, listed, number, plural
 
 TITLES = ("workload", "engine", "time, s", "ns per particle-step", "× native's time")
-WAITED = 0.9  # share of a core below which a run is said to have waited for one
+WAITED = 0.9  # share of its cores below which a run is said to have waited for one
 LONG_S = 1.0  # runs for which that can be said: a short one waits for its files, too
 
 
@@ -40,12 +40,17 @@ def remarks(bench: Bench) -> list[str]:
     said = [f"{engine} is left out: {why}" for engine, why in bench.left_out.items()]
     said += [f"{workload}: {why}" for (workload, _), why in bench.failures.items()]
     long = [timing for timing in bench.timings if timing.process_wall_s >= LONG_S]
-    if waited := sum(timing.core_share < WAITED for timing in long):
+    if waited := sum(timing.cores < WAITED * _cores_of(bench, timing) for timing in long):
         said.append(
-            f"{waited} of {plural(len(long), 'run')} had less than {100 * WAITED:.0f} % of a core: other "
-            "processes ran beside them; trust the ratios, not the times"
+            f"{waited} of {plural(len(long), 'run')} had less than {100 * WAITED:.0f} % of a core, or of the cores "
+            "that they had in another round: other processes ran beside them; trust the ratios, not the times"
         )
     return said
+
+
+def _cores_of(bench: Bench, timing: Timing) -> int:
+    """That a run like `timing` can use, by its best round: a small bed keeps fewer threads busy than it may have."""
+    return max(1, round(max(other.cores for other in bench.of(timing.key))))
 
 
 def machine() -> dict:

@@ -148,6 +148,18 @@ def test_threads_are_told_to_the_native_solver(paper, tmp_path, monkeypatch):
     assert f"--threads={cores()}" in asked
 
 
+def test_runs_that_waited_for_a_core_are_counted(paper):
+    """On two threads a large bed keeps two cores busy, a small one has work for one of them only."""
+    cpu_s = {("small", 2): (4.9, 4.9), ("large", 1): (4.9, 2.5), ("large", 2): (9.8, 4.9)}
+    timings = [
+        timing("native", k, 1.0, bed, threads=threads, process_cpu_s=found_s)
+        for (bed, threads), of_rounds in cpu_s.items()
+        for k, found_s in enumerate(of_rounds)
+    ]
+    [said] = bench_tables.remarks(bench(paper, timings))
+    assert said.startswith("2 of 6 runs had less than 90 % of a core")
+
+
 def test_a_bed_that_another_build_of_the_solver_made_tells_no_time(paper, tmp_path, monkeypatch):
     case, workspace = static(30)(paper, False).bed, Workspace(tmp_path / "out")
     bed(case, workspace, SimpleNamespace(say=lambda text: None))
