@@ -77,7 +77,7 @@ def make_packing(case: Case, seed: int, folder: Path, threads: int = 1) -> Packi
     unfinished = Path(mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
     try:
         options = [f"--seed={seed}", f"--threads={threads}", f"--file-name={case.file_name}"]
-        done = call_solver(["pack", "-", f"--output={unfinished}", *options], stdin=case.canonical)
+        done = call_solver(["pack", "-", *options, f"--output={unfinished}"], stdin=case.canonical)
         if done.returncode:
             raise CaseError(messages(done.stderr))
         unfinished.chmod(0o755)  # mkdtemp keeps others out
