@@ -1,4 +1,4 @@
-"""The contract of an engine: four small methods around data files. An engine starts no run; run.py does."""
+"""The contract of an engine: a few small methods around data files. An engine starts no run; run.py does."""
 
 from __future__ import annotations
 
@@ -25,18 +25,12 @@ class EngineFailure(Exception):
     """A run that did not end as it should; the text says what happened."""
 
 
-class Engine(ABC):
-    """One discrete element code. Paths that it names are relative to the run's folder, in which it is started."""
+class Code(ABC):
+    """A discrete element code that runs a case. Paths that it names are relative to the run's folder, in which it is started."""
 
     name: str
-    script: Path | None = (
-        None  # real file that the engine runs; a copy goes into every run's inputs/
-    )
-    sources: str | None = None  # how the names of its files here start, where not with `name`
+    script: Path | None = None  # real file that the code runs; a copy goes into every run's inputs/
     program: str  # the word of `command` that `executable` stands for, as people would type it
-    samples_file: str  # grows by one line per sample: shows the progress
-    kept_output: tuple[str, ...] = ()  # files of output/ worth keeping beside the dataset
-    log_noise: re.Pattern[bytes] | None = None  # of its log, not kept of a run that ended well
     by_hand: str = (
         ""  # a sentence for README.txt: what the command needs that is not there of itself
     )
@@ -44,7 +38,7 @@ class Engine(ABC):
 
     @abstractmethod
     def version(self) -> str:
-        """As the engine itself reports it. Raises EngineNotFound."""
+        """As the code itself reports it. Raises EngineNotFound."""
 
     @abstractmethod
     def executable(self) -> str:
@@ -52,11 +46,46 @@ class Engine(ABC):
 
     @abstractmethod
     def write_input(self, case: Case, packing: Packing, run_dir: Path) -> None:
-        """Write the engine's data files and a copy of its script into `run_dir`/inputs."""
+        """Write the code's data files and a copy of its script into `run_dir`/inputs."""
 
     @abstractmethod
     def command(self, case: Case, run_dir: Path) -> list[str]:
         """The command, to be started in `run_dir`; relative paths only."""
+
+    def unsupported(self, case: Case) -> list[str]:
+        """Why the code cannot run `case` faithfully at all; empty if it can."""
+        return []
+
+    def environment(self) -> dict[str, str]:
+        """Variables set for the process; one thread, so that runs repeat bit by bit and share the cores."""
+        return {"OMP_NUM_THREADS": "1"}
+
+    def compiler(self) -> str | None:
+        """Compiler and flags, where the code is built here."""
+        return None
+
+    def complaint(self, log: str) -> str | None:
+        """The reason for a failure in the code's own words, if its log gives one."""
+        return None
+
+    def schedule(self, case: Case) -> Schedule:
+        return Schedule.of(case.resolved, case.step_s(self.name))
+
+    def expected_s(self, case: Case) -> float:
+        """Rough CPU time of a run [s]."""
+        return 2.0 + self.cost_s * case.resolved["particles"]["count"] * self.schedule(case).steps
+
+    def _copy_script(self, run_dir: Path) -> None:
+        shutil.copyfile(self.script, run_dir / INPUTS / self.script.name)
+
+
+class Engine(Code):
+    """A code whose runs are read as datasets, so that they can be compared."""
+
+    sources: str | None = None  # how the names of its files here start, where not with `name`
+    samples_file: str  # grows by one line per sample: shows the progress
+    kept_output: tuple[str, ...] = ()  # files of output/ worth keeping beside the dataset
+    log_noise: re.Pattern[bytes] | None = None  # of its log, not kept of a run that ended well
 
     @abstractmethod
     def lines_before_bar(self, case: Case) -> int:
@@ -66,25 +95,9 @@ class Engine(ABC):
     def read_output(self, case: Case, packing: Packing, run_dir: Path, manifest: dict) -> Dataset:
         """What the engine left in `run_dir`/output. Raises EngineFailure where it is not whole."""
 
-    def unsupported(self, case: Case) -> list[str]:
-        """Why the engine cannot run `case` faithfully at all; empty if it can."""
-        return []
-
     def limitations(self, case: Case) -> list[str]:
         """What of `case` the engine expresses otherwise than the case says; for the report."""
         return []
-
-    def environment(self) -> dict[str, str]:
-        """Variables set for the process; one thread, so that runs repeat bit by bit and share the cores."""
-        return {"OMP_NUM_THREADS": "1"}
-
-    def compiler(self) -> str | None:
-        """Compiler and flags, where the engine is built here."""
-        return None
-
-    def complaint(self, log: str) -> str | None:
-        """The reason for a failure in the engine's own words, if its log gives one."""
-        return None
 
     def digest(self) -> str:
         """SHA-256 [hex] of what the run's result depends on beside case, packing and version: its files here."""
@@ -93,19 +106,9 @@ class Engine(ABC):
             content.update(source.read_bytes())
         return content.hexdigest()
 
-    def schedule(self, case: Case) -> Schedule:
-        return Schedule.of(case.resolved, case.step_s(self.name))
-
-    def expected_s(self, case: Case) -> float:
-        """Rough CPU time of a run [s]."""
-        return 2.0 + self.cost_s * case.resolved["particles"]["count"] * self.schedule(case).steps
-
     def lines_in_all(self, case: Case) -> int:
         """Lines of `samples_file` when the run is over."""
         return self.lines_before_bar(case) + self.schedule(case).samples
-
-    def _copy_script(self, run_dir: Path) -> None:
-        shutil.copyfile(self.script, run_dir / INPUTS / self.script.name)
 
 
 def unexpressed_readings(case: Case) -> list[str]:

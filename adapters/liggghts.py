@@ -26,7 +26,7 @@ from .engine import (
     unexpressed_readings,
     where_it_differs,
 )
-from .liggghts_input import bar, numbering, numbers, particles
+from .liggghts_input import bar, half_depth_m, numbering, numbers, particles
 from .packing import Packing
 from .sample_table import SAMPLE_COLUMNS, frame_times, resistance_table, whole_lines
 from .schedule import Schedule
@@ -67,7 +67,7 @@ class Liggghts(Engine):
         return found
 
     def version(self) -> str:
-        return _version(self.executable())
+        return said_version(self.executable(), r"Version ([^,)]+)", "LIGGGHTS", "liggghts")
 
     def environment(self) -> dict[str, str]:
         return super().environment() | NO_MPI_DAEMON
@@ -125,7 +125,7 @@ class Liggghts(Engine):
         self._copy_script(run_dir)
         texts = {
             "numbers.in": numbers(case.resolved, self.schedule(case), packing, self.averaged),
-            "particles.data": particles(case.resolved, packing),
+            "particles.data": particles(case.resolved, packing, half_depth_m(packing)),
         }
         if "bar" in case.resolved:
             texts["bar.stl"] = bar(case.resolved, packing)
@@ -160,7 +160,8 @@ class LiggghtsAveraged(Liggghts):
 
 
 @lru_cache
-def _version(executable: str) -> str:
+def said_version(executable: str, pattern: str, code: str, package: str) -> str:
+    """What `executable` says of its version when asked for help, by the one group of `pattern`. Raises EngineNotFound."""
     try:
         with TemporaryDirectory() as folder:
             asked = subprocess.run(
@@ -173,10 +174,10 @@ def _version(executable: str) -> str:
     except (OSError, subprocess.TimeoutExpired) as error:
         raise EngineNotFound(f"{executable} does not say its version: {error}") from error
     said = asked.stdout.decode(errors="replace")
-    found = re.search(r"Version ([^,)]+)", said)
+    found = re.search(pattern, said)
     if not found:
         raise EngineNotFound(
-            f"{executable} does not say its version; is it LIGGGHTS? (apt install liggghts)"
+            f"{executable} does not say its version; is it {code}? (apt install {package})"
         )
     return found[1]
 

@@ -59,8 +59,8 @@ def numbers(case: dict, schedule: Schedule, packing: Packing, averaged: bool) ->
     return "".join(f"variable {name} string {number(value)}\n" for name, value in found.items())
 
 
-def particles(case: dict, packing: Packing) -> str:
-    """The discs as LIGGGHTS data, in a domain that holds container, bed and bar with room above."""
+def particles(case: dict, packing: Packing, half_depth_m: float) -> str:
+    """The discs as LIGGGHTS data, in a domain that holds container, bed and bar with room above; in z half as deep."""
     width_m, top_m = case["container"]["width_m"], _top_m(case, packing)
     margin_m = 0.1 * width_m
     density = number(case["particles"]["density_kg_m3"] * case["container"]["thickness_m"])
@@ -71,7 +71,7 @@ def particles(case: dict, packing: Packing) -> str:
         "2 atom types",
         f"{number(-margin_m)} {number(width_m + margin_m)} xlo xhi",
         f"{number(-margin_m)} {number(top_m)} ylo yhi",
-        f"{number(-_half_depth_m(packing))} {number(_half_depth_m(packing))} zlo zhi",
+        f"{number(-half_depth_m)} {number(half_depth_m)} zlo zhi",
         "",
         "Atoms",
         "",
@@ -105,7 +105,7 @@ def _bin_m(case: dict, packing: Packing) -> float:
     return 2 * max(case["container"]["width_m"], _top_m(case, packing))
 
 
-def _half_depth_m(packing: Packing) -> float:
+def half_depth_m(packing: Packing) -> float:
     """Half the domain in z: a domain shallower than 0.05 m aborts once there is a mesh."""
     return max(0.5, 100 * float(packing.particles["radius_m"].max()))
 

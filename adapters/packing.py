@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from .case import Case, CaseError
-from .solver import call_solver, find_solver, messages
+from .solver import call_solver, messages, solver_sha256
 
 COLUMNS = (
     *("id", "x_m", "y_m", "radius_m"),
@@ -62,8 +62,8 @@ class Packing:
             raise PackingError(f"{folder} holds no packing: {error}") from error
 
 
-def make_packing(case: Case, seed: int, folder: Path) -> Packing:
-    """The packing in `folder`, made there by the solver unless it is there already.
+def make_packing(case: Case, seed: int, folder: Path, threads: int = 1) -> Packing:
+    """The packing in `folder`, made there by the solver, on at most so many threads, unless it is there already.
 
     It appears whole or not at all. Raises CaseError when the bed cannot be made from this case,
     SolverError when the solver fails.
@@ -76,8 +76,8 @@ def make_packing(case: Case, seed: int, folder: Path) -> Packing:
     folder.parent.mkdir(parents=True, exist_ok=True)
     unfinished = Path(mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
     try:
-        arguments = ["pack", "-", f"--seed={seed}", f"--output={unfinished}"]
-        done = call_solver([*arguments, f"--file-name={case.file_name}"], stdin=case.canonical)
+        options = [f"--seed={seed}", f"--threads={threads}", f"--file-name={case.file_name}"]
+        done = call_solver(["pack", "-", *options, f"--output={unfinished}"], stdin=case.canonical)
         if done.returncode:
             raise CaseError(messages(done.stderr))
         unfinished.chmod(0o755)  # mkdtemp keeps others out
@@ -116,8 +116,7 @@ def make_twin(packing: Packing, number: int, folder: Path) -> Packing:
 
 def packing_key(case: Case, seed: int) -> str:
     """Names a packing by all it is made from [hex]: the case, the seed and the program that settles it."""
-    program = hashlib.sha256(find_solver().read_bytes()).hexdigest()
-    return hashlib.sha256(f"{case.run_hash} {seed} {program}".encode()).hexdigest()
+    return hashlib.sha256(f"{case.run_hash} {seed} {solver_sha256()}".encode()).hexdigest()
 
 
 def _check(particles: pd.DataFrame, about: dict) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from . import mpi
 from .case import Case
-from .engine import INPUTS, OUTPUT, Engine
+from .engine import INPUTS, OUTPUT, Code, Engine
 from .packing import Packing
 
 
@@ -38,17 +38,17 @@ def run_name(packing: Packing, engine: Engine, key: str) -> str:
     return f"{engine.name}-seed{packing.seed}{twin}-{key[:12]}"
 
 
-def command(case: Case, engine: Engine, folder: Path, ranks: int = 1) -> list[str]:
+def command(case: Case, engine: Code, folder: Path, ranks: int = 1) -> list[str]:
     """The command that starts the run in `folder`, as people would type it."""
     return mpi.with_ranks(engine.command(case, folder), ranks)
 
 
-def environment(engine: Engine, ranks: int = 1) -> dict[str, str]:
+def environment(engine: Code, ranks: int = 1) -> dict[str, str]:
     """Variables that are set for it."""
     return engine.environment() | mpi.settings(ranks)
 
 
-def prepare(case: Case, packing: Packing, engine: Engine, folder: Path, ranks: int = 1) -> None:
+def prepare(case: Case, packing: Packing, engine: Code, folder: Path, ranks: int = 1) -> None:
     """Fill the new `folder` with all that a run reads, and with a README that says how to start it by hand."""
     (folder / INPUTS).mkdir(parents=True)
     (folder / OUTPUT).mkdir()
@@ -61,7 +61,7 @@ def prepare(case: Case, packing: Packing, engine: Engine, folder: Path, ranks: i
     )
 
 
-def rerun_command(case: Case, engine: Engine, folder: Path, ranks: int = 1) -> str:
+def rerun_command(case: Case, engine: Code, folder: Path, ranks: int = 1) -> str:
     """The one shell command that runs the engine by hand, in `folder`."""
     settings = (
         f"{name}={shlex.quote(value)}" for name, value in environment(engine, ranks).items()
@@ -70,7 +70,7 @@ def rerun_command(case: Case, engine: Engine, folder: Path, ranks: int = 1) -> s
     return f"rm -rf {OUTPUT} && mkdir {OUTPUT} && {' '.join(settings)} {words}"
 
 
-def _readme(case: Case, packing: Packing, engine: Engine, folder: Path, ranks: int) -> str:
+def _readme(case: Case, packing: Packing, engine: Code, folder: Path, ranks: int) -> str:
     return f"""\
 {case.name}, seed {packing.seed}, by {engine.name}
 

@@ -1,5 +1,6 @@
 """Finding and calling the program `crossdem-solver`."""
 
+import hashlib
 import os
 import shutil
 import subprocess
@@ -25,6 +26,11 @@ def find_solver() -> Path:
     if named:
         raise SolverError(f"CROSSDEM_SOLVER={named} is not a program; unset it or correct it")
     raise SolverError("crossdem-solver is not built; run scripts/quickstart, which builds it")
+
+
+def solver_sha256() -> str:
+    """Of the program itself [hex]: two builds that differ in a bit are two solvers. Raises SolverError."""
+    return hashlib.sha256(find_solver().read_bytes()).hexdigest()
 
 
 def call_solver(arguments: list[str], stdin: bytes = b"") -> subprocess.CompletedProcess:

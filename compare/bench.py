@@ -14,12 +14,28 @@ from .bench_workloads import Workload
 
 
 @dataclass(frozen=True)
+class Contender:
+    """What takes its turn in every round."""
+
+    engine: str
+    threads: int = 1  # at most so many; more than one only of the native solver
+
+    def __str__(self) -> str:
+        return f"{self.engine}, {self.threads} threads" if self.threads > 1 else self.engine
+
+
+Key = tuple[str, Contender]  # with the workload's name before it
+
+
+@dataclass(frozen=True)
 class Timing:
     """One run of one engine on one workload."""
 
     workload: str
     engine: str
-    round: int  # 0, 1, ...: in each, every engine runs every workload once, one after the other
+    threads: int  # as many as it might use at most
+    round: int  # 0, 1, ...: in each, every contender runs every workload once, one after the other
+    step_s: float
     particles: int
     steps: int
     wall_s: float  # of the steps
@@ -28,12 +44,16 @@ class Timing:
     peak_memory_bytes: int | None  # of the process; None where the engine does not say
 
     @property
+    def key(self) -> Key:
+        return self.workload, Contender(self.engine, self.threads)
+
+    @property
     def ns_per_particle_step(self) -> float:
         return 1e9 * self.wall_s / (self.particles * self.steps)
 
     @property
-    def core_share(self) -> float:
-        """Of a core [0, 1], over the whole process: clearly below 1 where it had to wait for one."""
+    def cores(self) -> float:
+        """In use on average, over the whole process: clearly below 1 where it had to wait for one."""
         return self.process_cpu_s / self.process_wall_s
 
 
@@ -53,16 +73,27 @@ class Spread:
 
 @dataclass(frozen=True)
 class Row:
-    """One engine on one workload."""
+    """One contender on one workload."""
 
     workload: str
     engine: str
+    threads: int
     step_s: float
     particles: int
     steps: int
     wall_s: Spread
     ns_per_particle_step: Spread
-    ratio: Spread | None  # of times, to the native solver's in the same round; None where it has none
+    # Of times, to the native solver's on its fewest threads in the same round; None where it has none.
+    ratio: Spread | None
+
+    @property
+    def key(self) -> Key:
+        return self.workload, Contender(self.engine, self.threads)
+
+    @property
+    def contender(self) -> str:
+        """In words."""
+        return str(self.key[1])
 
 
 @dataclass(frozen=True)
@@ -73,35 +104,33 @@ class Bench:
     versions: dict[str, str]  # of the engines that ran
     left_out: dict[str, str]  # engine: why it did not run
     timings: tuple[Timing, ...]
-    failures: dict[tuple[str, str], str]  # (workload, engine): why it has no timings
+    failures: dict[Key, str]  # why it has no timings
 
-    def of(self, workload: str, engine: str) -> list[Timing]:
+    def of(self, key: Key) -> list[Timing]:
         """In the order of the rounds."""
-        return [t for t in self.timings if (t.workload, t.engine) == (workload, engine)]
+        return [timing for timing in self.timings if timing.key == key]
 
     def rows(self) -> list[Row]:
-        pairs = [(workload, engine) for workload in self.workloads for engine in self.versions]
-        return [
-            self._row(workload, engine)
-            for workload, engine in pairs
-            if self.of(workload.name, engine)
-        ]
+        return [self._row(key) for key in dict.fromkeys(timing.key for timing in self.timings)]
 
-    def _row(self, workload: Workload, engine: str) -> Row:
-        timings = self.of(workload.name, engine)
+    def _row(self, key: Key) -> Row:
+        timings = self.of(key)
+        first = timings[0]
         return Row(
-            workload.name,
-            engine,
-            workload.case.step_s(engine),
-            timings[0].particles,
-            timings[0].steps,
+            first.workload,
+            first.engine,
+            first.threads,
+            first.step_s,
+            first.particles,
+            first.steps,
             Spread.of([timing.wall_s for timing in timings]),
             Spread.of([timing.ns_per_particle_step for timing in timings]),
-            self._ratio(workload.name, timings),
+            Spread.of(ratios) if (ratios := self.ratios(key)) else None,
         )
 
-    def _ratio(self, workload: str, timings: list[Timing]) -> Spread | None:
+    def ratios(self, key: Key) -> list[float]:
         """Round by round, as what slows a machine down lasts longer than a round's runs and cancels in their ratio."""
-        native = {timing.round: timing.wall_s for timing in self.of(workload, REFERENCE)}
-        ratios = [t.wall_s / native[t.round] for t in timings if t.round in native]
-        return Spread.of(ratios) if ratios else None
+        native = [t for t in self.timings if (t.workload, t.engine) == (key[0], REFERENCE)]
+        fewest = min((timing.threads for timing in native), default=None)
+        reference = {t.round: t.wall_s for t in native if t.threads == fewest}
+        return [t.wall_s / reference[t.round] for t in self.of(key) if t.round in reference]

@@ -13,10 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crossdem.adapters.case import Case
-from crossdem.adapters.engine import INPUTS, Engine, EngineFailure
+from crossdem.adapters.engine import INPUTS, Code, EngineFailure
+from crossdem.adapters.engines import get_engine
+from crossdem.adapters.lammps import Lammps
 
 YADE_CLOCK = Path(__file__).with_name("bench_yade_clock.py")
-# LIGGGHTS's own, from MPI_Wtime after all setting up to the end of the last step; finish.cpp writes it after every run.
+# LIGGGHTS' and LAMMPS' own, by MPI_Wtime from the end of all setting up to the end of the last step.
 LOOP_TIME = re.compile(
     r"^Loop time of (\S+) on \d+ procs for (\d+) steps with \d+ atoms", re.MULTILINE
 )
@@ -33,39 +35,40 @@ class Told:
 
 @dataclass(frozen=True)
 class Clock:
-    command: Callable[[Engine, Case, Path], list[str]]  # to be started in the run's folder
+    code: Code
+    command: Callable[[Code, Case, Path], list[str]]  # to be started in the run's folder
     read: Callable[[str], Told]  # from the log
 
 
-def timed_command(engine: Engine, case: Case, run_dir: Path) -> list[str]:
+def timed_command(code: Code, case: Case, run_dir: Path, threads: int = 1) -> list[str]:
     """The command that makes the run in `run_dir` and tells its time. Raises EngineNotFound."""
-    command = CLOCKS[engine.name].command(engine, case, run_dir)
-    command[command.index(engine.program)] = engine.executable()
-    return command
+    command = CLOCKS[code.name].command(code, case, run_dir)
+    command[command.index(code.program)] = code.executable()
+    return [*command, "--threads", str(threads)] if threads > 1 else command
 
 
-def told(engine: Engine, case: Case, log: str) -> Told:
+def told(code: Code, case: Case, log: str) -> Told:
     """What the log of a run that ended well says. Raises EngineFailure where that is not the time of the whole run."""
     try:
-        found = CLOCKS[engine.name].read(log)
+        found = CLOCKS[code.name].read(log)
     except (ValueError, LookupError, TypeError) as error:
         raise EngineFailure("did not say how long its steps took") from error
-    if found.steps != (steps := engine.schedule(case).steps):
+    if found.steps != (steps := code.schedule(case).steps):
         raise EngineFailure(f"made {found.steps} steps instead of {steps}")
     return found
 
 
-def _measure(engine: Engine, case: Case, run_dir: Path) -> list[str]:
-    return [engine.program, "measure", f"{INPUTS}/case.json", "--packing", f"{INPUTS}/packing.csv"]
+def _measure(code: Code, case: Case, run_dir: Path) -> list[str]:
+    return [code.program, "measure", f"{INPUTS}/case.json", "--packing", f"{INPUTS}/packing.csv"]
 
 
-def _as_it_runs(engine: Engine, case: Case, run_dir: Path) -> list[str]:
-    return engine.command(case, run_dir)
+def _as_it_runs(code: Code, case: Case, run_dir: Path) -> list[str]:
+    return code.command(case, run_dir)
 
 
-def _with_clock(engine: Engine, case: Case, run_dir: Path) -> list[str]:
+def _with_clock(code: Code, case: Case, run_dir: Path) -> list[str]:
     shutil.copyfile(YADE_CLOCK, run_dir / INPUTS / YADE_CLOCK.name)
-    return [engine.program, f"{INPUTS}/{YADE_CLOCK.name}", engine.name]
+    return [code.program, f"{INPUTS}/{YADE_CLOCK.name}", code.name]
 
 
 def _json_line(log: str) -> Told:
@@ -74,12 +77,17 @@ def _json_line(log: str) -> Told:
 
 
 def _loop_time(log: str) -> Told:
-    wall_s, steps = LOOP_TIME.findall(log)[-1]  # the first is that of `run 0`, the packing's forces
+    # LIGGGHTS' first is that of `run 0`, the packing's forces.
+    wall_s, steps = LOOP_TIME.findall(log)[-1]
     return Told(int(steps), float(wall_s))
 
 
 CLOCKS = {
-    "native": Clock(_measure, _json_line),
-    "liggghts": Clock(_as_it_runs, _loop_time),
-    "yade": Clock(_with_clock, _json_line),
+    clock.code.name: clock
+    for clock in (
+        Clock(get_engine("native"), _measure, _json_line),
+        Clock(get_engine("liggghts"), _as_it_runs, _loop_time),
+        Clock(get_engine("yade"), _with_clock, _json_line),
+        Clock(Lammps(), _as_it_runs, _loop_time),
+    )
 }

@@ -1,4 +1,4 @@
-"""Speed drawn: a bar for each engine on each workload."""
+"""Speed drawn: a bar for each contender on each workload."""
 
 from __future__ import annotations
 
@@ -32,17 +32,19 @@ def draw_bench(bench: Bench, figure: Figure) -> None:
 
 def _bars(axes: Axes, rows: list[Row], value: str, label: str) -> None:
     workloads = list(dict.fromkeys(row.workload for row in rows))
-    engines = list(dict.fromkeys(row.engine for row in rows))
-    styles = engine_styles(engines)
-    height = 0.8 / len(engines)
+    contenders = list(dict.fromkeys(row.contender for row in rows))
+    styles = engine_styles(contenders)
+    height = 0.8 / len(contenders)
     for row in rows:
         spread = getattr(row, value)
-        place = workloads.index(row.workload) - 0.4 + height * (engines.index(row.engine) + 0.5)
-        axes.barh(place, spread.median, 0.9 * height, color=styles[row.engine].colour)
+        place = (
+            workloads.index(row.workload) - 0.4 + height * (contenders.index(row.contender) + 0.5)
+        )
+        axes.barh(place, spread.median, 0.9 * height, color=styles[row.contender].colour)
         axes.plot([spread.low, spread.high], [place, place], color="black", linewidth=1.2)
         ratio = f"  ×{number(row.ratio.median, 2)}" if row.ratio else ""
         axes.annotate(
-            f"{row.engine} {number(spread.median)}{ratio}",
+            f"{row.contender} {number(spread.median)}{ratio}",
             (max(spread.median, spread.high), place),
             xytext=(4, 0),
             textcoords="offset points",
@@ -52,6 +54,7 @@ def _bars(axes: Axes, rows: list[Row], value: str, label: str) -> None:
     axes.set_yticks(range(len(workloads)), workloads)
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
+    axes.set_axisbelow(True)
     axes.tick_params(axis="y", length=0)
     axes.set_xlim(0, ROOM * max(getattr(row, value).high for row in rows))
     axes.set_xlabel(label)

@@ -18,6 +18,8 @@ from .drawing import png_figure
 from .pages import write_record
 from .wording import printable
 
+WIDE = 130  # columns that the widest table needs
+
 
 def write_bench(bench: Bench, folder: Path, json_file: Path | None, about: dict) -> None:
     """bench.json, also as `json_file` if that is given, and bench.png where there is something to draw."""
@@ -28,7 +30,7 @@ def write_bench(bench: Bench, folder: Path, json_file: Path | None, about: dict)
 
 
 def print_bench(bench: Bench, folder: Path, about: dict) -> None:
-    console = Console()
+    console = wide_console()
     console.print(text_table(tables.TITLES, tables.rows(bench)))
     for line in tables.workload_lines(bench):
         console.print(line, highlight=False, soft_wrap=True)
@@ -43,6 +45,12 @@ def print_notes(bench: Bench, about: dict, console: Console) -> None:
         console.print(Text(printable(line)), soft_wrap=True)
     for remark in tables.remarks(bench):
         console.print(Text(printable(remark), style="magenta"), soft_wrap=True)
+
+
+def wide_console() -> Console:
+    """A file has room for a whole table, whatever its width."""
+    console = Console()
+    return console if console.is_terminal else Console(width=WIDE)
 
 
 def text_table(titles: tuple[str, ...], rows: list[tuple[str, ...]]) -> Table:

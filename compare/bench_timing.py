@@ -6,14 +6,14 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from crossdem.adapters.engine import Engine, EngineFailure
+from crossdem.adapters.engine import EngineFailure
 from crossdem.adapters.one_run import LOG, Limits
 from crossdem.adapters.packing import Packing
 from crossdem.adapters.process import Process
 from crossdem.adapters.run_folder import environment, prepare
 
-from .bench import Timing
-from .bench_clocks import timed_command, told
+from .bench import Contender, Timing
+from .bench_clocks import CLOCKS, timed_command, told
 from .bench_workloads import Workload
 
 POLL_S = 0.05
@@ -23,17 +23,17 @@ TELL_S = 0.5
 def time_run(
     number: int,
     workload: Workload,
-    engine: Engine,
+    contender: Contender,
     packing: Packing,
     run_dir: Path,
     tell: Callable[[float], None],
 ) -> Timing:
     """One run in the new folder `run_dir`. Raises EngineFailure, EngineNotFound."""
-    case = workload.case
+    case, engine = workload.case, CLOCKS[contender.engine].code
     if reasons := engine.unsupported(case):
         raise EngineFailure(f"cannot run this case: {'; '.join(reasons)}")
     prepare(case, packing, engine, run_dir)
-    command = timed_command(engine, case, run_dir)
+    command = timed_command(engine, case, run_dir, contender.threads)
     allowed_s = Limits().allowed_s(engine.expected_s(case))
     process = Process(command, run_dir, environment(engine), run_dir / LOG)
     told_s = 0.0
@@ -54,8 +54,10 @@ def time_run(
     said = told(engine, case, log)
     return Timing(
         workload=workload.name,
-        engine=engine.name,
+        engine=contender.engine,
+        threads=contender.threads,
         round=number,
+        step_s=engine.schedule(case).step_s,
         particles=len(packing.particles),
         steps=said.steps,
         wall_s=said.wall_s,

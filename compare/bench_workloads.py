@@ -9,9 +9,10 @@ from crossdem.adapters.case import Case, varied_table
 from crossdem.adapters.engines import DEFAULT_ENGINES
 
 PENETRATION_STEPS = 90_000  # of `bar`: as many as the paper's own penetration has
-# Of a static bed: a second or two at 50 ns, a quarter of a minute at 500; and however large or small it is.
+# Of a static bed: a third of a second at 10 ns, a quarter of a minute at 500.
 PARTICLE_STEPS = 30_000_000
-FEWEST_STEPS, MOST_STEPS = 100, 30_000
+# Of any: enough that the first step, in which the contacts are found, is a small part; and so many that a few discs end.
+FEWEST_STEPS, MOST_STEPS = 300, 300_000
 QUICK = 100  # times fewer steps
 
 
@@ -40,13 +41,15 @@ def time_to_solution(case: Case, quick: bool) -> Workload:
     return Workload("time-to-solution", varied_table(case, time=time), case)
 
 
-def static(particles: int) -> Callable[[Case, bool], Workload]:
+def static(
+    particles: int, particle_steps: int = PARTICLE_STEPS
+) -> Callable[[Case, bool], Workload]:
     """A bed at rest, as deep as that of the case and as much wider as it has more particles, at the time step of `bar`."""
 
     def workload(case: Case, quick: bool) -> Workload:
         bed = _wide_bed(case, particles)
         step_s = min(case.step_s(engine) for engine in DEFAULT_ENGINES)
-        steps = min(PARTICLE_STEPS // particles, MOST_STEPS) // (QUICK if quick else 1)
+        steps = min(particle_steps // particles, MOST_STEPS) // (QUICK if quick else 1)
         steps = max(FEWEST_STEPS, steps)
         return Workload(static_name(particles), _at_step(bed, step_s, 0.0, steps), bed)
 

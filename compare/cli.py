@@ -202,13 +202,13 @@ def calibrate(**arguments):
 
 
 @cli.group(invoke_without_command=True)
-@options.taking(bench_options.engines, bench_options.workloads)
+@options.taking(bench_options.engines, bench_options.workloads, bench_options.one_thread)
 @bench_options.shared
 @click.pass_context
 def bench(context, **arguments):
     """Time the engines on the same beds: ns per particle-step, time to solution, each against the native solver.
 
-    Nothing but the stepping is timed, by each engine itself, on one core. Ends with 3 when an engine is missing or failed.
+    Nothing but the stepping is timed, by each engine itself, on one thread. Ends with 3 when an engine is missing or failed.
     """
     if not context.invoked_subcommand:
         return commands.bench(**arguments)
@@ -218,9 +218,11 @@ def bench(context, **arguments):
 
 @bench.command("scaling")
 @bench_options.largest
+@bench_options.one_and_two_threads
 @bench_options.shared
 def bench_scaling(**arguments):
-    """Time the native solver on static beds of 1000 particles and more: speed, memory, and how long a bed settles."""
+    """Time the native solver on static beds of 1000 particles and more: speed on one thread and on two, memory,
+    and how long a bed settles."""
     return commands.bench_scaling(**arguments)
 
 

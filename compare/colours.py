@@ -17,6 +17,7 @@ KNOWN = {
     "native": EngineStyle("#3b82d6", "o", ()),
     "liggghts": EngineStyle("#e0752d", "s", (6, 2)),
     "yade": EngineStyle("#1fa187", "^", (2, 1.5)),
+    "lammps": EngineStyle("#8a5a3c", "p", (8, 2, 2, 2)),
     "liggghts-averaged": EngineStyle("#b565c9", "D", (6, 2, 1.5, 2)),
     "yade-averaged": EngineStyle("#c9a227", "v", (4, 1)),
 }

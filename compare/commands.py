@@ -179,23 +179,23 @@ def calibrate(case_file, overrides, splits, record, out, jobs) -> ExitCode:
         return calibrate_case(case, recorded, splits, workspace.root / "calibrate", jobs)
 
 
-def bench(engines, workloads, quick, repeats, json_file, case_file, out) -> ExitCode:
+def bench(engines, workloads, threads, quick, repeats, json_file, case_file, out) -> ExitCode:
     from .bench_command import bench_engines  # here: as in _report
 
     names = workloads or (QUICK_WORKLOADS if quick else WORKLOADS)
     case = _load(case_file, [])
     _needs_bar(case)
     with _workspace(case, [], out) as workspace:
-        return bench_engines(case, names, engines, repeats, quick, workspace, json_file)
+        return bench_engines(case, names, engines, threads, repeats, quick, workspace, json_file)
 
 
-def bench_scaling(largest, quick, repeats, json_file, case_file, out) -> ExitCode:
+def bench_scaling(largest, threads, quick, repeats, json_file, case_file, out) -> ExitCode:
     from .bench_command import bench_scaling as scale  # here: as in _report
 
     case = _load(case_file, [])
     _needs_bar(case)
     with _workspace(case, [], out) as workspace:
-        return scale(case, largest, repeats, quick, workspace, json_file)
+        return scale(case, largest, threads, repeats, quick, workspace, json_file)
 
 
 def _needs_bar(case: Case) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import shlex
 from collections.abc import Iterator, Sequence
@@ -18,7 +17,7 @@ from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.machine import machine_facts
 from crossdem.adapters.packing import Packing
-from crossdem.adapters.solver import SolverError, find_solver
+from crossdem.adapters.solver import SolverError, solver_sha256
 from crossdem.adapters.workspace import Workspace
 
 from .ensemble import RUN, Ensemble
@@ -174,7 +173,7 @@ def _manifest(case: Case, ensemble: Ensemble, plan: Plan, command: str) -> dict:
         DATE: datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "command": command,
         "crossdem": __version__,
-        "solver_sha256": hashlib.sha256(find_solver().read_bytes()).hexdigest(),
+        "solver_sha256": solver_sha256(),
         "engines": {engine: _engine(ensemble, engine) for engine in ensemble.engines},
         "machine": machine_facts(),  # that wrote this; each run names its own
         "rounding": f"fields.csv.gz to 1e-{FIELD_DIGITS} m; every other number reads back the same",
