@@ -106,6 +106,7 @@ class Contacts {
  private:
   void search(const Particles& particles, const Surfaces& surfaces) {
     width_ = skin_.now() + skin_.reserve();
+    candidates_ = {};  // before there are others
     candidates_ = close_pairs(particles, width_);
     if (owner_ == MemoryOwner::particle) {
       const std::size_t half = candidates_.size();

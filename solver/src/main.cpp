@@ -67,15 +67,15 @@ void pack(const Arguments& given) {
 
 void run(const Arguments& given) {
   const crossdem::Case setup = load(given.case_file, given.shown_name);
-  const crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
+  crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
   claim_folder(given.output);
-  crossdem::run(setup, packing, given.output, given.threads);
+  crossdem::run(setup, std::move(packing), given.output, given.threads);
 }
 
 void measure(const Arguments& given) {
   const crossdem::Case setup = load(given.case_file, given.shown_name);
-  const crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
-  const crossdem::Measurement found = crossdem::measure(setup, packing, given.steps, given.threads);
+  crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
+  const crossdem::Measurement found = crossdem::measure(setup, std::move(packing), given.steps, given.threads);
   const nlohmann::json line = {{"steps", found.steps},
                                {"particles", found.particles},
                                {"wall_s", found.wall},

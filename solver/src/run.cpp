@@ -8,13 +8,14 @@
 
 namespace crossdem {
 
-void run(const Case& setup, const Packing& packing, const std::filesystem::path& folder, std::size_t threads) {
+void run(const Case& setup, Packing packing, const std::filesystem::path& folder, std::size_t threads) {
   const long total = setup.time.steps_in(setup.time.penetration);
   const long per_sample = setup.time.steps_in(setup.time.sample_interval);
   const long per_frame = setup.time.steps_in(setup.time.frame_interval);
   const long between_outputs = std::gcd(per_sample, per_frame);
 
   Simulation simulation(setup, particles_of(packing, setup), packing.bar_tip, threads);
+  packing = {};  // a large one takes a tenth of all memory
   MotionFile motion(folder / "motion.h5", setup, simulation.particles());
   ResistanceFile resistance(folder / "resistance.csv");
   LedgerFile ledger(folder / "ledger.csv");

@@ -30,8 +30,11 @@ class Fault:
 
 # Faults are seeded in the plain steps, so that the copy makes its steps by them: the batches, which users' runs are made
 # by, are held against the plain steps bit for bit (tests/solver/batch_test.cpp).
-BATCHES = "std::make_unique<BatchedPaperStepper>(choice.readings, world)"
-PLAIN = "std::make_unique<PaperStepper<PaperScheme>>(PaperScheme{}, choice.readings, world)"
+PLAIN = {
+    "BatchedStepper<PaperBatches>>(setup, world)": "PaperStepper<PaperScheme>>(PaperScheme{}, choice.readings, world)",
+    "BatchedStepper<LiggghtsBatches>>(setup, world)": "ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>(setup, world)",
+    "BatchedStepper<YadeBatches>>(setup, world)": "ConventionalStepper<YadeScheme<YadeLeapFrog>>>(setup, world)",
+}
 
 
 class Workshop:
@@ -51,8 +54,10 @@ class Workshop:
         _copy_if_other(ROOT / "CMakeLists.txt", self.sources / "CMakeLists.txt")
         schemes = self.sources / "solver" / "src" / "scheme.cpp"
         text = schemes.read_text()
-        assert text.count(BATCHES) == 1, f"scheme.cpp holds {BATCHES!r} not just once"
-        schemes.write_text(text.replace(BATCHES, PLAIN))
+        for batches, plain in PLAIN.items():
+            assert text.count(batches) == 1, f"scheme.cpp holds {batches!r} not just once"
+            text = text.replace(batches, plain)
+        schemes.write_text(text)
         flags = ["-DBUILD_TESTING=OFF", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1"]
         _quietly("cmake", "-S", self.sources, "-B", self.build, *flags)
 

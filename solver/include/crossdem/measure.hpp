@@ -18,6 +18,6 @@ struct Measurement {
 
 /// Makes the steps of run(), or only the first `steps` of them, and writes nothing. Throws SimulationError as run()
 /// does, CaseError where the case has fewer than `steps`.
-Measurement measure(const Case& setup, const Packing& packing, std::optional<long> steps, std::size_t threads = 1);
+Measurement measure(const Case& setup, Packing packing, std::optional<long> steps, std::size_t threads = 1);
 
 }  // namespace crossdem

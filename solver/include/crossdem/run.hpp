@@ -9,6 +9,6 @@ namespace crossdem {
 
 /// Runs `setup` from `packing` and writes motion.h5, resistance.csv, ledger.csv and, when all is done, run.json into
 /// the existing `folder`. Throws SimulationError or FileError; what was written until then stays.
-void run(const Case& setup, const Packing& packing, const std::filesystem::path& folder, std::size_t threads = 1);
+void run(const Case& setup, Packing packing, const std::filesystem::path& folder, std::size_t threads = 1);
 
 }  // namespace crossdem
