@@ -76,15 +76,22 @@ class Contacts {
   /// Makes the list anew after `steps` of the world; contacts that stay in it keep their memory. Positions must be
   /// finite if they have strayed.
   void rebuild(const Particles& particles, const Surfaces& surfaces, long steps = 0) {
+    Crew alone;
+    rebuild(particles, surfaces, steps, alone);
+  }
+  void rebuild(const Particles& particles, const Surfaces& surfaces, long steps, Crew& crew) {
     if (!listed_at_.empty()) skin_.lasted(steps - listed_steps_);
     listed_steps_ = steps;
-    if (strayed(particles, surfaces)) search(particles, surfaces);
-    std::vector<Pair> pairs;
-    pairs.reserve(pairs_.size() + pairs_.size() / 8);
-    for (const ParticlePair& pair : candidates_)
-      if (closer_than(skin_.now(), particles, pair)) pairs.push_back({pair.i, pair.j, {}});
-    keep_memories(pairs_, pairs);
-    pairs_ = std::move(pairs);
+    if (strayed(particles, surfaces)) search(particles, surfaces, crew);
+    pairs_ = gathered<Pair>(candidates_.size(), crew, [&](std::size_t begin, std::size_t end) {
+      std::vector<Pair> pairs;
+      pairs.reserve((pairs_.size() + pairs_.size() / 8) / crew.size());
+      for (std::size_t n = begin; n < end; ++n)
+        if (closer_than(skin_.now(), particles, candidates_[n]))
+          pairs.push_back({candidates_[n].i, candidates_[n].j, {}});
+      keep_memories(pairs_, pairs);
+      return pairs;
+    });
 
     std::vector<OnSurface> on_surfaces;
     for (const OnSurface& candidate : surface_candidates_)
@@ -104,10 +111,10 @@ class Contacts {
   [[nodiscard]] const std::vector<OnSurface>& on_surfaces() const { return on_surfaces_; }
 
  private:
-  void search(const Particles& particles, const Surfaces& surfaces) {
+  void search(const Particles& particles, const Surfaces& surfaces, Crew& crew) {
     width_ = skin_.now() + skin_.reserve();
     candidates_ = {};  // before there are others
-    candidates_ = close_pairs(particles, width_);
+    candidates_ = close_pairs(particles, width_, crew);
     if (owner_ == MemoryOwner::particle) {
       const std::size_t half = candidates_.size();
       for (std::size_t k = 0; k < half; ++k) candidates_.push_back({candidates_[k].j, candidates_[k].i});
@@ -127,7 +134,9 @@ class Contacts {
   /// Both lists are sorted by key: hands the memories of contacts that stand in both from the old list to the new.
   template <class Contact>
   static void keep_memories(const std::vector<Contact>& old_list, std::vector<Contact>& new_list) {
-    auto old_contact = old_list.begin();
+    if (new_list.empty()) return;
+    const auto comes_before = [](const Contact& a, const Contact& b) { return a.key() < b.key(); };
+    auto old_contact = std::lower_bound(old_list.begin(), old_list.end(), new_list.front(), comes_before);
     for (Contact& contact : new_list) {
       while (old_contact != old_list.end() && old_contact->key() < contact.key()) ++old_contact;
       if (old_contact == old_list.end()) return;

@@ -59,24 +59,28 @@ class CellGrid {
 
 }  // namespace
 
-std::vector<ParticlePair> close_pairs(const Particles& particles, double gap) {
-  std::vector<ParticlePair> pairs;
-  if (particles.count() < 2) return pairs;
+std::vector<ParticlePair> close_pairs(const Particles& particles, double gap, Crew& crew) {
+  if (particles.count() < 2) return {};
   const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
   const CellGrid grid(particles, 2 * largest + gap);
-  pairs.reserve(4 *
-                particles.count());  // more than discs of like size have at a time in two dimensions, each counted once
-  std::vector<std::uint32_t> partners;
-  for (std::uint32_t i = 0; i < particles.count(); ++i) {
-    partners.clear();
-    grid.for_each_near(particles.position[i], [&](std::uint32_t j) {
-      if (j > i && closer_than(gap, particles, {i, j})) partners.push_back(j);
-    });
-    std::sort(partners.begin(), partners.end());
-    for (const std::uint32_t j : partners) pairs.push_back({i, j});
-  }
-  pairs.shrink_to_fit();
-  return pairs;
+  std::vector<ParticlePair> found =
+      gathered<ParticlePair>(particles.count(), crew, [&](std::size_t begin, std::size_t end) {
+        std::vector<ParticlePair> pairs;
+        pairs.reserve(
+            4 * (end - begin));  // more than discs of like size have at a time in two dimensions, each counted once
+        std::vector<std::uint32_t> partners;
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+          partners.clear();
+          grid.for_each_near(particles.position[i], [&](std::uint32_t j) {
+            if (j > i && closer_than(gap, particles, {i, j})) partners.push_back(j);
+          });
+          std::sort(partners.begin(), partners.end());
+          for (const std::uint32_t j : partners) pairs.push_back({i, j});
+        }
+        return pairs;
+      });
+  found.shrink_to_fit();
+  return found;
 }
 
 }  // namespace crossdem

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "../spin_barrier.hpp"
+#include "../crew.hpp"
 #include "blocks.hpp"
 
 namespace crossdem {
@@ -25,9 +25,8 @@ class BatchedStepper final : public Stepper {
       : plain_(Scheme::plain(setup, world)),
         scheme_(plain_),
         blocks_(world.particles.count()),
-        threads_(std::clamp<std::size_t>(world.particles.count() / fewest_particles, 1,
-                                         std::min(world.threads, most_ahead))),
-        barrier_(threads_) {
+        crew_(std::clamp<std::size_t>(world.particles.count() / fewest_particles, 1,
+                                      std::min(world.threads, most_ahead))) {
     if constexpr (!Scheme::moves_first) world.loads = {};  // the blocks have their own
   }
 
@@ -41,7 +40,7 @@ class BatchedStepper final : public Stepper {
     blocks_.cut(contacts());
     set_checkpoint(w);
     std::vector<std::jthread> others;
-    for (std::size_t thread = 1; thread < threads_; ++thread)
+    for (std::size_t thread = 1; thread < crew_.size(); ++thread)
       others.emplace_back([this, &w, thread] { work(w, thread); });
     work(w, 0);
     others.clear();
@@ -86,14 +85,6 @@ class BatchedStepper final : public Stepper {
 
   enum class Next { wave, list, start_again, end };
 
-  /// Part number `part` of `parts` of [0, count), as multiples of `unit` where they end before `count`.
-  static std::pair<std::size_t, std::size_t> share(std::size_t count, std::size_t part, std::size_t parts,
-                                                   std::size_t unit = 1) {
-    const std::size_t units = (count + unit - 1) / unit;
-    const auto end_of = [&](std::size_t number) { return std::min(units * number / parts * unit, count); };
-    return {end_of(part), end_of(part + 1)};
-  }
-
   /// [m^2/s^2]
   static double fastest_squared(const Particles& particles) {
     double largest = 0.0;
@@ -115,13 +106,13 @@ class BatchedStepper final : public Stepper {
 
   void work(World& w, std::size_t thread) {
     const bool leads = thread == 0;
-    const auto [begin, end] = share(w.particles.count(), thread, threads_, batch::width);
+    const auto [begin, end] = share(w.particles.count(), thread, crew_.size(), batch::width);
     const auto take_particles = [&, begin = begin, end = end] {
       blocks_.take(w, begin, end);
       if constexpr (Scheme::marks) blocks_.take_marks(plain_.marked_at(), begin, end);
     };
     const auto for_own_blocks = [&](auto function) {
-      const auto [first, last] = share(blocks_.count(), thread, threads_);
+      const auto [first, last] = share(blocks_.count(), thread, crew_.size());
       for (std::size_t block = first; block < last; ++block) function(block);
     };
     const auto take_list = [&](std::size_t block) { blocks_.take_list(w, contacts(), block); };
@@ -130,21 +121,23 @@ class BatchedStepper final : public Stepper {
     take_particles();
     for_own_blocks(take_list);
     while (true) {
-      barrier_.arrive_and_wait();
+      crew_.wait_for_all();
       if (leads) next_ = plan(w);
-      barrier_.arrive_and_wait();
+      crew_.wait_for_all();
       switch (next_) {
         case Next::wave:
           run_levels(w, thread);
-          barrier_.arrive_and_wait();
+          crew_.wait_for_all();
           if (leads) finish_wave(w);
           break;
         case Next::list:
           blocks_.give_back(w, begin, end);
           for_own_blocks(give_back_list);
-          barrier_.arrive_and_wait();
-          if (leads) make_list(w);
-          barrier_.arrive_and_wait();
+          crew_.wait_for_all();
+          if (leads)
+            make_list(w);
+          else
+            crew_.serve(thread);
           if (failure_) return;
           for_own_blocks(take_list);
           if constexpr (Scheme::marks) blocks_.take_marks(plain_.marked_at(), begin, end);
@@ -189,6 +182,11 @@ class BatchedStepper final : public Stepper {
 
   /// Also where it is the code that makes its lists: its marks then.
   void make_list(World& w) {
+    make_list_with_crew(w);
+    crew_.dismiss();
+  }
+
+  void make_list_with_crew(World& w) {
     blocks_.drop_list();
     marked_now_ = marked_now_ || bar().must_list(moved_.marked_squared);
     if constexpr (Scheme::marks) {
@@ -198,7 +196,7 @@ class BatchedStepper final : public Stepper {
     if (w.surfaces.bar) w.surfaces.bar->advance(w.dt);
     try {
       if (contacts().strayed(w.particles, w.surfaces)) w.check();
-      contacts().rebuild(w.particles, w.surfaces, w.steps);
+      contacts().rebuild(w.particles, w.surfaces, w.steps, crew_);
     } catch (...) {
       failure_ = std::current_exception();
       return;
@@ -212,7 +210,7 @@ class BatchedStepper final : public Stepper {
   }
 
   void run_levels(const World& w, std::size_t thread) {
-    const auto [first, last] = share(ahead_, thread, threads_);
+    const auto [first, last] = share(ahead_, thread, crew_.size());
     for (std::size_t front = first; front + 1 < blocks_.count() + last; ++front) {
       for (std::size_t number = first; number < last; ++number) {
         if (front < number || front - number >= blocks_.count()) continue;
@@ -279,8 +277,7 @@ class BatchedStepper final : public Stepper {
   typename Scheme::Plain plain_;
   Scheme scheme_;
   Blocks<Scheme> blocks_;
-  std::size_t threads_ = 1;
-  SpinBarrier barrier_;
+  Crew crew_;
   std::array<Level, most_ahead> levels_;
   std::size_t ahead_ = 0;  // steps of the next wave
   long last_step_ = 0;     // of this advance
