@@ -85,7 +85,8 @@ class Contacts {
     if (strayed(particles, surfaces)) search(particles, surfaces, crew);
     pairs_ = gathered<Pair>(candidates_.size(), crew, [&](std::size_t begin, std::size_t end) {
       std::vector<Pair> pairs;
-      pairs.reserve((pairs_.size() + pairs_.size() / 8) / crew.size());
+      const std::size_t expected = pairs_.size() + pairs_.size() / 8;
+      pairs.reserve(begin == 0 ? expected : expected / crew.size());  // the first takes in the others
       for (std::size_t n = begin; n < end; ++n)
         if (closer_than(skin_.now(), particles, candidates_[n]))
           pairs.push_back({candidates_[n].i, candidates_[n].j, {}});

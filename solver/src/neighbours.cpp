@@ -66,8 +66,8 @@ std::vector<ParticlePair> close_pairs(const Particles& particles, double gap, Cr
   std::vector<ParticlePair> found =
       gathered<ParticlePair>(particles.count(), crew, [&](std::size_t begin, std::size_t end) {
         std::vector<ParticlePair> pairs;
-        pairs.reserve(
-            4 * (end - begin));  // more than discs of like size have at a time in two dimensions, each counted once
+        // More than discs of like size have in two dimensions, each counted once; the first takes in the others.
+        pairs.reserve(4 * (begin == 0 ? particles.count() : end - begin));
         std::vector<std::uint32_t> partners;
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
           partners.clear();

@@ -29,7 +29,7 @@ inline std::vector<ParticlePair> close_pairs(const Particles& particles, double 
   return close_pairs(particles, gap, alone);
 }
 
-/// found(begin, end) of each run of [0, count), one run for each of the crew, one after the other.
+/// found(begin, end) of each run of [0, count), one run for each of the crew, put together in what the first one gives.
 template <class Item, class Found>
 std::vector<Item> gathered(std::size_t count, Crew& crew, Found found) {
   std::vector<std::vector<Item>> parts(crew.size());
