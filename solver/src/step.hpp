@@ -31,7 +31,8 @@ inline double moment_lever(TorqueArm reading, double radius, double overlap) {
   return reading == TorqueArm::radius ? 1.0 : 1.0 - 0.5 * overlap / radius;
 }
 
-/// The law of a pair, a wall or the bar in the place of j. False where they do not touch.
+/// The law of a pair, a wall or the bar in the place of j. False where they do not touch. Inlined by force: a disc that
+/// is handed over in memory, number by number, would be waited for when it is read as vectors.
 template <class Law>
 [[gnu::always_inline]] inline bool surface_force(const Law& law, const Surfaces& surfaces,
                                                  const ContactParameters& parameters, double dt,

@@ -154,12 +154,35 @@ HWY_INLINE Columns columns_of(const std::uint32_t* numbers, const Disc* discs) {
   return columns_of([&](std::size_t k) HWY_ATTR { return hn::Load(lanes, &discs[numbers[k]].x); });
 }
 #else
-HWY_INLINE Columns columns_of(const std::uint32_t* numbers, const Disc* discs) {
-  Columns c{};
+HWY_INLINE void load_motion(const std::uint32_t* numbers, const Disc* discs, Columns& c) {
+  load_columns([&](std::size_t k) HWY_ATTR { return &discs[numbers[k]].x; }, c.x, c.y, c.moves_x, c.moves_y);
+}
+
+HWY_INLINE void load_turns(const std::uint32_t* numbers, const Disc* discs, Columns& c) {
   Vector unused;  // two of them: the references of load_columns() must not be to the same
   Vector unused_too;
-  load_columns([&](std::size_t k) HWY_ATTR { return &discs[numbers[k]].x; }, c.x, c.y, c.moves_x, c.moves_y);
   load_columns([&](std::size_t k) HWY_ATTR { return &discs[numbers[k]].turns; }, c.turns, c.radius, unused, unused_too);
+}
+
+HWY_INLINE Columns columns_of(const std::uint32_t* numbers, const Disc* discs) {
+  Columns c{};
+  load_motion(numbers, discs, c);
+  load_turns(numbers, discs, c);
+  return c;
+}
+
+/// b minus a of x, y and moves, and the turns and radius of b; `of_a` receives those of a. Half by half, as there are
+/// few registers.
+HWY_INLINE Columns minus(const std::uint32_t* a, const std::uint32_t* b, const Disc* discs, Columns& of_a) {
+  Columns c{};
+  load_motion(a, discs, of_a);
+  load_motion(b, discs, c);
+  c.x = hn::Sub(c.x, of_a.x);
+  c.y = hn::Sub(c.y, of_a.y);
+  c.moves_x = hn::Sub(c.moves_x, of_a.moves_x);
+  c.moves_y = hn::Sub(c.moves_y, of_a.moves_y);
+  load_turns(a, discs, of_a);
+  load_turns(b, discs, c);
   return c;
 }
 #endif
@@ -206,16 +229,9 @@ HWY_INLINE Both both_of(const std::uint32_t* i, const std::uint32_t* j, const Di
   columns({odd(0), odd(2), odd(4), odd(6)}, b.y, b.moves_y, b.radius_i, b.radius_j);
   return b;
 #else
-  const Columns a = columns_of(i, discs);
-  const Columns b = columns_of(j, discs);
-  return {hn::Sub(a.x, b.x),
-          hn::Sub(a.y, b.y),
-          hn::Sub(a.moves_x, b.moves_x),
-          hn::Sub(a.moves_y, b.moves_y),
-          a.turns,
-          a.radius,
-          b.turns,
-          b.radius};
+  Columns of_j{};
+  const Columns c = minus(j, i, discs, of_j);
+  return {c.x, c.y, c.moves_x, c.moves_y, c.turns, c.radius, of_j.turns, of_j.radius};
 #endif
 }
 
@@ -248,21 +264,27 @@ HWY_INLINE void add(Forces f, const std::uint32_t* i, const std::uint32_t* j, Lo
     double* load_j = &loads[j[k]].force_x;
     hn::Store(hn::MulAdd(row_j, on_j, hn::Load(half_line, load_j)), half_line, load_j);
   };
-  std::array<Vector, 4> rows_i{f.x, f.y, f.turning_i, f.work};
-  std::array<Vector, 4> rows_j{f.x, f.y, f.turning_j, f.work};
-  transpose(rows_i[0], rows_i[1], rows_i[2], rows_i[3]);
-  if constexpr (Law::turn_alike)
-    rows_j = rows_i;
-  else
-    transpose(rows_j[0], rows_j[1], rows_j[2], rows_j[3]);
+  const auto add_rows = [&](const std::array<Vector, 4>& rows_i, const std::array<Vector, 4>& rows_j) HWY_ATTR {
 #if HWY_TARGET == HWY_AVX2
-  for (std::size_t k = 0; k < count; ++k) add_row(rows_i[k], rows_j[k], k);
+    for (std::size_t k = 0; k < count; ++k) add_row(rows_i[k], rows_j[k], k);
 #else
-  for (std::size_t k = 0; k < upper; ++k)
-    add_row(hn::LowerHalf(half_line, rows_i[k]), hn::LowerHalf(half_line, rows_j[k]), k);
-  for (std::size_t k = 0; k < upper; ++k)
-    add_row(hn::UpperHalf(half_line, rows_i[k]), hn::UpperHalf(half_line, rows_j[k]), k + upper);
+    for (std::size_t k = 0; k < upper; ++k)
+      add_row(hn::LowerHalf(half_line, rows_i[k]), hn::LowerHalf(half_line, rows_j[k]), k);
+    for (std::size_t k = 0; k < upper; ++k)
+      add_row(hn::UpperHalf(half_line, rows_i[k]), hn::UpperHalf(half_line, rows_j[k]), k + upper);
 #endif
+  };
+  Vector x = f.x;
+  Vector y = f.y;
+  Vector work = f.work;
+  transpose(f.x, f.y, f.turning_i, f.work);
+  const std::array<Vector, 4> rows{f.x, f.y, f.turning_i, f.work};
+  if constexpr (Law::turn_alike) {
+    add_rows(rows, rows);
+  } else {
+    transpose(x, y, f.turning_j, work);
+    add_rows(rows, {x, y, f.turning_j, work});
+  }
 #else
   alignas(64) std::array<Load, count> given;
   store_columns(f.x, f.y, f.turning_i, f.work, [&](std::size_t k) HWY_ATTR { return &given[k].force_x; });
@@ -293,6 +315,7 @@ HWY_INLINE void add_pair_forces(const Law& law, std::span<Batch> batches, const 
   if (turns == 0) return;
   const auto i = [&](std::size_t turn) { return batches[turn / parts].i.data() + count * (turn % parts); };
   const auto j = [&](std::size_t turn) { return batches[turn / parts].j.data() + count * (turn % parts); };
+  // Inlined wherever they stand: what goes from one to the next then stays in registers.
   const auto look = [&](std::size_t turn) HWY_ATTR __attribute__((always_inline)) {
     return law.approach(i(turn), j(turn), discs);
   };

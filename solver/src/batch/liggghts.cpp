@@ -24,7 +24,7 @@ class HookePairLaw {
     Vector inverse;  // 1 / distance
   };
 
-  HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) const {
+  static HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
     const Both b = both_of(i, j, discs);
     const Vector distance_squared = hn::Add(hn::Mul(b.x, b.x), hn::Mul(b.y, b.y));
     const Vector distance = hn::Sqrt(distance_squared);

@@ -23,7 +23,7 @@ class TanakaPairLaw {
     Vector inverse;  // 1 / distance
   };
 
-  HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) const {
+  static HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
     Approach a{between(i, j, discs), hn::Zero(lanes), hn::Zero(lanes)};
     const Columns& b = a.between;
     a.distance_squared = hn::Add(hn::Mul(b.x, b.x), hn::Mul(b.y, b.y));
@@ -85,14 +85,11 @@ class TanakaPairLaw {
   }
 #else
   static HWY_INLINE Columns between(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
-    const Columns a = columns_of(i, discs);
-    const Columns b = columns_of(j, discs);
-    return {hn::Sub(b.x, a.x),
-            hn::Sub(b.y, a.y),
-            hn::Sub(b.moves_x, a.moves_x),
-            hn::Sub(b.moves_y, a.moves_y),
-            hn::Add(b.turns, a.turns),
-            hn::Add(b.radius, a.radius)};
+    Columns of_i{};
+    Columns c = minus(i, j, discs, of_i);
+    c.turns = hn::Add(c.turns, of_i.turns);
+    c.radius = hn::Add(c.radius, of_i.radius);
+    return c;
   }
 #endif
 

@@ -25,7 +25,7 @@ class ViscElPairLaw {
     Vector normal_y;
   };
 
-  HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) const {
+  static HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
     const Columns a = columns_of(i, discs);
     const Columns b = columns_of(j, discs);
     const Vector x = hn::Sub(b.x, a.x);
