@@ -63,11 +63,11 @@ class BatchedStepper final : public Stepper {
   /// One step of a wave.
   struct Level {
     alignas(64) std::atomic<std::size_t> blocks_done = 0;
-    batch::Moved moved;
     std::vector<SurfaceTotals> sums;  // for particles_in_sum at a time
     Surfaces surfaces;                // during the step
-    std::optional<OwnBar> bar;        // the same
-    bool moves = true;                // its particles, after the forces
+    batch::Moved moved;
+    std::optional<OwnBar> bar;  // during the step
+    bool moves = true;          // its particles, after the forces
   };
 
   /// What a wave that went too far goes back to. The particles and pairs of the world are as they were then.
