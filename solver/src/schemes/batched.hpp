@@ -60,9 +60,13 @@ class BatchedStepper final : public Stepper {
   /// Times its latest stride, a step of the fastest particle is thought to be at most; what goes further, goes back.
   static constexpr double caution = 1.5;
 
+  /// Blocks that have made a step of the wave; in a cache line that no other thread writes to.
+  struct alignas(64) Progress {
+    std::atomic<std::size_t> blocks = 0;
+  };
+
   /// One step of a wave.
   struct Level {
-    alignas(64) std::atomic<std::size_t> blocks_done = 0;
     std::vector<SurfaceTotals> sums;  // for particles_in_sum at a time
     Surfaces surfaces;                // during the step
     batch::Moved moved;
@@ -175,7 +179,7 @@ class BatchedStepper final : public Stepper {
       level.sums.assign((w.particles.count() + particles_in_sum - 1) / particles_in_sum, {});
       level.moved = {};
       level.moves = !Scheme::moves_first || w.steps + static_cast<long>(ahead_) + 1 < last_step_;
-      level.blocks_done = 0;
+      progress_[ahead_].blocks = 0;
     }
     return ahead_ == 0 ? Next::list : Next::wave;
   }
@@ -218,11 +222,11 @@ class BatchedStepper final : public Stepper {
         Level& level = levels_[number];
         if (number > 0) {
           const std::size_t needed = std::min(block + 2, blocks_.count());
-          const std::atomic<std::size_t>& done = levels_[number - 1].blocks_done;
+          const std::atomic<std::size_t>& done = progress_[number - 1].blocks;
           wait_until([&] { return done.load(std::memory_order_acquire) >= needed; });
         }
         level.moved.include(blocks_.step(block, w, scheme_, level.surfaces, *level.bar, level.sums, level.moves));
-        level.blocks_done.store(block + 1, std::memory_order_release);
+        progress_[number].blocks.store(block + 1, std::memory_order_release);
       }
     }
   }
@@ -279,6 +283,7 @@ class BatchedStepper final : public Stepper {
   Blocks<Scheme> blocks_;
   Crew crew_;
   std::array<Level, most_ahead> levels_;
+  std::array<Progress, most_ahead> progress_;
   std::size_t ahead_ = 0;  // steps of the next wave
   long last_step_ = 0;     // of this advance
   batch::Moved moved_;     // in the latest step, and since the list was made
