@@ -75,6 +75,29 @@ def compare(**arguments):
 
 
 @cli.command()
+@options.taking(
+    options.case_or_reference,
+    options.engines,
+    options.seeds_of(16, "How many packings; the native solver runs each setting on all of them."),
+)
+@click.option(
+    "--engine-seeds",
+    type=click.IntRange(1, 1000),
+    default=4,
+    show_default=True,
+    help="On how many of them the other codes run, where a claim is theirs to test, too.",
+)
+@options.taking(options.out, options.overrides, options.jobs_or_tasks, options.profile)
+def reproduce(**arguments):
+    """Test the paper's claims, figure by figure: what it says, what comes out here, and the number that tells.
+
+    Takes half an hour on two cores; interrupted, the same command goes on where it was. Ends with 3 when a run failed, whatever
+    became of the claims.
+    """
+    return commands.reproduce(**arguments)
+
+
+@cli.command()
 @options.case
 @click.option(
     "--from",
@@ -179,12 +202,7 @@ def record(**arguments):
 
 
 @cli.command()
-@click.argument(
-    "case_file",
-    metavar="[CASE]",
-    type=click.Path(path_type=Path),
-    default=Path("reference_cases/bar_penetration.toml"),
-)
+@options.case_or_reference
 @click.option(
     "--splits",
     type=click.IntRange(20, 100_000),

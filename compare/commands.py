@@ -11,6 +11,7 @@ from crossdem import ExitCode
 from crossdem.adapters.case import Case, CaseError, load_case
 from crossdem.adapters.dataset import Dataset, DatasetError
 from crossdem.adapters.engines import unknown_engines
+from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.workflow.snakemake import check_cluster
 from crossdem.adapters.workspace import Workspace
 
@@ -156,6 +157,22 @@ def stability(case_file, steps_s, seeds, out, overrides, jobs) -> ExitCode:
     print_stability(found, page)
     failed = any(trial.outcome == FAILED for trial in found.trials)
     return ExitCode.ENGINE_FAILED if failed else ExitCode.AGREES
+
+
+def reproduce(case_file, engines, seeds, engine_seeds, out, overrides, jobs, profile) -> ExitCode:
+    from .reproduction.report import print_reproduction, write_reproduction  # here: as in _report
+    from .reproduction.reproduce import reproduce_paper
+    from .reproduction.runs import Size
+
+    case = _load(case_file, overrides)
+    _needs_bar(case)
+    check_cluster(profile)
+    size = Size(seeds, engine_seeds, tuple(dict.fromkeys([REFERENCE, *engines])))
+    with _workspace(case, overrides, out) as workspace:
+        reproduction = reproduce_paper(case, size, workspace, jobs, Console(), profile)
+        page = write_reproduction(reproduction, workspace.root / "reproduce")
+    print_reproduction(reproduction, page)
+    return reproduction.exit_code
 
 
 def record(case_file, variants, record, out, jobs, profile, **ensemble) -> ExitCode:

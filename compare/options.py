@@ -43,6 +43,12 @@ def time_steps(context, parameter, text: str) -> list[float]:
 
 
 case = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
+case_or_reference = click.argument(
+    "case_file",
+    metavar="[CASE]",
+    type=click.Path(path_type=Path),
+    default=Path("reference_cases/bar_penetration.toml"),
+)
 overrides = click.option(
     "--set",
     "overrides",

@@ -1,0 +1,59 @@
+"""What the paper's text does not say, and what other assumptions would change."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+from crossdem.adapters.case import Case
+
+from .changes import change_table, draw_changes
+from .penetration_resistance import wider
+from .runs import Found
+from .soil_motion import AS_PRINTED
+from .study import Findings, Picture, Setting
+
+LARGER_SHARES = (0.3, 0.7)  # of the larger discs, by number
+LOOSE = 0.77  # share of a bed's area that discs fill, less than any settled bed has: so high lies no particle
+
+
+def settings(case: Case) -> list[Setting]:
+    return [AS_PRINTED, *others(case)]
+
+
+def others(case: Case) -> list[Setting]:
+    return [*_mixtures(case), _higher_start(case), *wider(case)]
+
+
+def findings(found: Found) -> Findings:
+    varied = others(found.case)
+    picture = Picture(
+        "assumptions",
+        "Assumptions, and what others would change",
+        "Native: ratio to the case as it stands, and its 95 % interval. The mixture is assumed half and half by number, the "
+        "bar 1 cm wide and to start at the topmost particle under it.",
+        (960, 90 + 34 * len(varied)),
+        partial(draw_changes, found, AS_PRINTED, varied),
+        change_table(found, AS_PRINTED, varied),
+    )
+    return Findings("What the text leaves open", (), (picture,))
+
+
+def _mixtures(case: Case) -> list[Setting]:
+    if len(case.resolved["particles"]["diameters_m"]) != 2:
+        return []
+    made = []
+    for share in LARGER_SHARES:
+        overrides = (f"particles.number_shares={[round(1 - share, 9), share]}",)
+        made.append(Setting(f"{100 * share:.0f} % large discs", overrides, bed=overrides))
+    return made
+
+
+def _higher_start(case: Case) -> Setting:
+    particles = case.resolved["particles"]
+    area_m2 = sum(
+        particles["count"] * share * math.pi / 4 * diameter_m**2
+        for diameter_m, share in zip(particles["diameters_m"], particles["number_shares"])
+    )
+    tip_m = round(area_m2 / (LOOSE * case.resolved["container"]["width_m"]), 4)
+    return Setting("bar starts above the bed", (f"bar.tip_m={tip_m!r}",))
