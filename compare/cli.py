@@ -75,6 +75,16 @@ def compare(**arguments):
 
 
 @cli.command()
+@click.argument("folder", metavar="DATASET", type=click.Path(path_type=Path))
+@click.option("--vtk", is_flag=True, help="PVD and VTP files, which ParaView opens.")
+@click.option("--h5md", is_flag=True, help="One H5MD file in three dimensions.")
+@options.out
+def export(**arguments):
+    """Write the motion of a run, such as results/bar_penetration/runs/native-seed1-..., for other programs."""
+    return commands.export(**arguments)
+
+
+@cli.command()
 @options.taking(
     options.case_or_reference,
     options.engines,

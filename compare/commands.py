@@ -118,6 +118,20 @@ def compare(folders, out) -> ExitCode:
         raise CaseError(error.faults) from error
 
 
+def export(folder, vtk, h5md, out) -> ExitCode:
+    from .export import write_h5md, write_vtk  # here: as in _report
+
+    if not (vtk or h5md):
+        raise click.UsageError("say what to write: --vtk, --h5md or both")
+    dataset = Dataset.read(folder)
+    workspace = Workspace(out or Path("results") / f"{folder.resolve().name}-export")
+    if vtk:
+        click.echo(write_vtk(dataset, workspace.root / "vtk"))
+    if h5md:
+        click.echo(write_h5md(dataset, workspace.root / "motion.h5"))
+    return ExitCode.AGREES
+
+
 def explain(
     case_file, origin, target, seeds, engine_seeds, out, overrides, jobs, profile
 ) -> ExitCode:

@@ -161,7 +161,7 @@ out = click.option(
     "--out",
     type=click.Path(path_type=Path),
     help="Output folder. [default: results/NAME of the case, results/NAME-HASH with --set, "
-    "results/NAME-compare for compare]",
+    "results/NAME-compare for compare, results/RUN-export for export]",
 )
 
 

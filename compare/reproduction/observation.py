@@ -24,14 +24,16 @@ SHARE, WAVELENGTH = "fluctuation_share", "median_wavelength_m"  # beside the QUA
 class Sample:
     """The runs of one setting in one engine. Tables have a row per packing, indexed by its seed."""
 
-    endpoints: pd.DataFrame  # a column per quantity of QUANTITIES, SHARE and WAVELENGTH
+    # A column per quantity of QUANTITIES, SHARE and WAVELENGTH; `with_restless` also of the runs that failed a gate.
+    endpoints: pd.DataFrame
+    with_restless: pd.DataFrame
     profiles: pd.DataFrame  # mean resistance [N]; columns: depth [m]
     spectra: pd.DataFrame  # [N^2 m]; columns: cycles per m of depth
     layers: pd.DataFrame  # mean downward movement [m] near the bar; columns: (layer, time_s); mean of the packings
     folders: dict[int, Path]
     manifests: tuple[dict, ...]
     failures: tuple[str, ...]  # runs without result, for people
-    restless: tuple[str, ...]  # runs that failed a gate, for people; they are in none of the tables
+    restless: tuple[str, ...]  # runs that failed a gate, for people; they are in no other table
 
     def __getitem__(self, quantity: str) -> pd.Series:
         return self.endpoints[quantity]
@@ -51,7 +53,7 @@ class Sample:
 
 def observe(runs: Sequence[VariantRun], unsettled: Sequence[str] = ()) -> Sample:
     """Reads each dataset once and keeps none. A run that failed a gate is left out. `unsettled`: beds without runs."""
-    endpoints, profiles, spectra, layers, folders = {}, {}, {}, [], {}
+    every, sound, profiles, spectra, layers, folders = {}, [], {}, {}, [], {}
     manifests, failures, restless = [], list(unsettled), []
     for run in runs:
         seed = run.packing.seed
@@ -60,24 +62,25 @@ def observe(runs: Sequence[VariantRun], unsettled: Sequence[str] = ()) -> Sample
             continue
         dataset = run.dataset()
         manifests.append(dataset.manifest)
+        table = dataset.resistance
+        every[seed] = {name: one.of(dataset) for name, one in QUANTITIES.items()} | {
+            SHARE: fluctuation_share(table),
+            WAVELENGTH: median_wavelength_m(table),
+        }
         failed = [gate["message"] for gate in dataset.manifest["gates"] if not gate["passed"]]
         if failed:
             restless.append(f"seed {seed}: {'; '.join(failed)}")
             continue
-        table = dataset.resistance
-        endpoints[seed] = {name: one.of(dataset) for name, one in QUANTITIES.items()} | {
-            SHARE: fluctuation_share(table),
-            WAVELENGTH: median_wavelength_m(table),
-        }
+        sound.append(seed)
         profiles[seed] = resistance_profile(table, FINE_M)["mean_N"]
         spectra[seed] = spectrum(table)
         layers.append(layer_movement(dataset))
         folders[seed] = run.folder
     columns = [*QUANTITIES, SHARE, WAVELENGTH]
+    endpoints = pd.DataFrame.from_dict(every, orient="index", columns=columns, dtype=float)
     return Sample(
-        _by_seed(endpoints).reindex(columns=columns)
-        if endpoints
-        else pd.DataFrame(columns=columns, dtype=float),
+        endpoints.loc[sound].rename_axis("seed"),
+        endpoints.rename_axis("seed"),
         _by_seed(profiles),
         _by_seed(spectra),
         pd.concat(layers, axis="columns").T.groupby(level=0).mean().T if layers else pd.DataFrame(),

@@ -166,14 +166,15 @@ def _cause_of_low_resistance(found: Found, settings: list[Setting]) -> Claim:
         "section 4.4",
         "The springs are not stiff enough: that is one reason for the low resistance.",
         f"The mean resistance changes with the stiffness: {said}.",
-        _explains(stiffest),
+        explains(stiffest),
         stiffest.as_change(),
         f"reproduced where springs ten times as stiff raise the resistance by more than {100 * (NO_EFFECT - 1):.0f} %; not "
         "where the interval lies below that; with a correction where it is raised, but by less",
     )
 
 
-def _explains(ratio: Estimate) -> str:
+def explains(ratio: Estimate) -> str:
+    """Whether a change of the resistance by `ratio` explains that it was too low: more than NO_EFFECT, or not."""
     if not ratio.known:
         return UNDECIDED
     if ratio.low > NO_EFFECT:

@@ -138,7 +138,9 @@ def _pictures(found: Found) -> tuple[Picture, ...]:
         Picture(
             "fig10_map",
             "All combinations of Table 2",
-            "Native, mean of the packings: movement near the bar, height of the bump, mean resistance.",
+            "Native, mean of the packings: movement near the bar, height of the bump, mean resistance. An asterisk: some of "
+            "the beds do not rest, as nothing takes the spin from a disc without friction in its middle; their values are shown "
+            "here, and in no claim.",
             (960, 300),
             partial(_draw_map, found),
             _map_table(found),
@@ -200,7 +202,8 @@ def _map_table(found: Found) -> pd.DataFrame:
             "particle_friction": particles,
             "wall_friction": wall,
             "quantity": quantity,
-            **vars(mean_of(sample[quantity])),
+            **vars(mean_of(sample.with_restless[quantity])),
+            "restless": len(sample.restless),
         }
         for particles in COEFFICIENTS
         for wall in COEFFICIENTS
@@ -220,9 +223,16 @@ def _draw_map(found: Found, figure: Figure) -> None:
         panel.imshow(values, origin="lower", cmap="viridis", aspect="auto")
         middle = np.nanmean([np.nanmin(values), np.nanmax(values)])
         for (row, column), value in np.ndenumerate(values.to_numpy()):
+            restless = found.of(setting(COEFFICIENTS[row], COEFFICIENTS[column])).restless
             colour = "white" if value < middle else "black"
             panel.text(
-                column, row, f"{value:.3g}", ha="center", va="center", color=colour, fontsize=9
+                column,
+                row,
+                f"{value:.3g}{'*' if restless else ''}",
+                ha="center",
+                va="center",
+                color=colour,
+                fontsize=9,
             )
         ticks = range(len(COEFFICIENTS))
         panel.set_xticks(ticks, [f"{one:g}" for one in COEFFICIENTS])
