@@ -59,17 +59,21 @@ def difference_of(values: pd.Series, base: pd.Series) -> Estimate:
 
 
 def ratio_of(values: pd.Series, base: pd.Series) -> Estimate:
-    """Of the geometric means of two independent samples of values above 0 (Welch's t of their logarithms)."""
-    logs = [
-        np.log(one[np.isfinite(one) & (one > 0)].to_numpy(dtype=float)) for one in (values, base)
-    ]
-    packings = min(map(len, logs))
-    change = logs[0].mean() - logs[1].mean() if packings else math.nan
+    """Of the means of two independent samples: Welch's t of the means' relative errors, on a logarithmic scale.
+
+    NaN where a mean is not above 0; without an interval where a sample has fewer than two packings.
+    """
+    samples = [one[np.isfinite(one)].to_numpy(dtype=float) for one in (values, base)]
+    packings = min(map(len, samples))
+    means = [sample.mean() if len(sample) else math.nan for sample in samples]
+    if not all(mean > 0 for mean in means):
+        return Estimate(math.nan, math.nan, math.nan, packings)
+    ratio = means[0] / means[1]
     if packings < 2:
-        return Estimate(math.exp(change), math.nan, math.nan, packings)
-    parts = [log.var(ddof=1) / len(log) for log in logs]
+        return Estimate(ratio, math.nan, math.nan, packings)
+    parts = [(stats.sem(sample) / mean) ** 2 for sample, mean in zip(samples, means)]
     if sum(parts) == 0:
-        return Estimate(math.exp(change), math.exp(change), math.exp(change), packings)
-    freedom = sum(parts) ** 2 / sum(part**2 / (len(log) - 1) for part, log in zip(parts, logs))
-    half = stats.t.ppf((1 + LEVEL) / 2, freedom) * math.sqrt(sum(parts))
-    return Estimate(*(math.exp(change + by) for by in (0, -half, half)), packings)
+        return Estimate(ratio, ratio, ratio, packings)
+    freedom = sum(parts) ** 2 / sum(part**2 / (len(one) - 1) for part, one in zip(parts, samples))
+    half = math.exp(stats.t.ppf((1 + LEVEL) / 2, freedom) * math.sqrt(sum(parts)))
+    return Estimate(ratio, ratio / half, ratio * half, packings)

@@ -59,14 +59,11 @@ def print_reproduction(
     """The claims as a table, what went otherwise, and where the page is."""
     console = console or Console()
     table = Table(box=None, pad_edge=False, header_style="dim")
-    for title in ("claim of the paper", "here", "number", "in"):
+    for title in ("here", "the paper says", "the number that tells"):
         table.add_column(title)
     for claim in reproduction.claims:
         table.add_row(
-            *(
-                Text(printable(cell))
-                for cell in (claim.says, claim.verdict, claim.number, claim.source)
-            )
+            *(Text(printable(cell)) for cell in (claim.verdict, claim.says, claim.number))
         )
     console.print(table)
     for name, why in left_out(reproduction):

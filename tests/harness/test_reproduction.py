@@ -53,15 +53,19 @@ def test_a_difference_is_taken_packing_by_packing():
     assert (found.mean, found.packings) == (pytest.approx(0.5), 3)
 
 
-def test_a_ratio_is_of_geometric_means_with_welchs_interval():
-    found = estimates.ratio_of(SECOND, FIRST)
-    welch = stats.ttest_ind(np.log(SECOND), np.log(FIRST), equal_var=False)
-    assert math.log(found.mean) == pytest.approx(np.log(SECOND).mean() - np.log(FIRST).mean())
-    # The interval leaves out no change exactly where Welch's test finds one.
-    half = math.log(found.high / found.low) / 2
-    freedom = stats.t.isf(0.025, 3.5)  # of about as many degrees
-    assert half == pytest.approx(abs(math.log(found.mean) / welch.statistic) * freedom, rel=0.25)
-    assert (found.low > 1) == (welch.pvalue < 0.05)
+def test_a_ratio_is_of_means_and_covers_the_truth_19_times_in_20():
+    random, covered = np.random.default_rng(1), 0
+    for _ in range(1000):
+        base, other = (pd.Series(random.normal(mean, 0.3 * mean, 16)) for mean in (2.0, 5.0))
+        found = estimates.ratio_of(other, base)
+        assert found.mean == pytest.approx(other.mean() / base.mean())
+        covered += found.low < 2.5 < found.high
+    assert 930 <= covered <= 970
+
+
+def test_a_ratio_to_what_may_be_nothing_is_none():
+    assert math.isnan(estimates.ratio_of(FIRST, -SECOND).mean)
+    assert not estimates.ratio_of(FIRST, SECOND[:1]).known
 
 
 def resistance(wavelength_m, share):
