@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -59,4 +59,3 @@ class Findings:
     title: str
     claims: tuple[Claim, ...] = ()
     pictures: tuple[Picture, ...] = ()
-    tables: dict[str, pd.DataFrame] = field(default_factory=dict)  # shown whole, by their titles
