@@ -14,7 +14,7 @@ from crossdem.adapters.packing import Packing
 from crossdem.adapters.workspace import Workspace
 
 from ..progress import ProgressDisplay
-from ..variants import Variant, run_variants, settled
+from ..variants import Variant, run_many_variants, settled
 
 PHASES = 16  # of a step in which contacts begin
 SPEED_M_S = 0.1  # of the discs, downwards
@@ -60,7 +60,7 @@ def collide(case: Case, workspace: Workspace, jobs: int, display: ProgressDispla
     for share, trial in trials:
         (packing,) = settled(trial, 1, workspace, jobs, display)
         pairs.append((Variant(f"collision at {share:g} sqrt(m/k)", trial), packing))
-    runs = run_variants(case, pairs, workspace, jobs, display)
+    runs = run_many_variants(case, pairs, workspace, jobs, display)
     rows = [
         {"share": share, **_energies(run.dataset())}
         for (share, _), run in zip(trials, runs)
