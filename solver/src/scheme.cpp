@@ -19,12 +19,12 @@ std::unique_ptr<Stepper> make_stepper(const Case& setup, World& world) {
     return std::make_unique<PaperStepper<MixedScheme>>(MixedScheme{{choice.readings}, {choice.readings.integrator}},
                                                        choice.readings, world);
   }
-  if (choice.name == "liggghts") return std::make_unique<BatchedStepper<LiggghtsBatches>>(setup, world);
+  if (choice.name == "liggghts") return std::make_unique<BatchedStepper<LiggghtsBatches<LiggghtsVerlet>>>(setup, world);
   if (choice.name == "liggghts_averaged")
-    return std::make_unique<ConventionalStepper<LiggghtsScheme<LiggghtsSetVelocities>>>(setup, world);
-  if (choice.name == "yade") return std::make_unique<BatchedStepper<YadeBatches>>(setup, world);
+    return std::make_unique<BatchedStepper<LiggghtsBatches<LiggghtsSetVelocities>>>(setup, world);
+  if (choice.name == "yade") return std::make_unique<BatchedStepper<YadeBatches<YadeLeapFrog>>>(setup, world);
   if (choice.name == "yade_averaged")
-    return std::make_unique<ConventionalStepper<YadeScheme<YadeMemoryForce>>>(setup, world);
+    return std::make_unique<BatchedStepper<YadeBatches<YadeMemoryForce>>>(setup, world);
   throw std::invalid_argument("no scheme \"" + choice.name + "\"");
 }
 

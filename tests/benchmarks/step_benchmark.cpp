@@ -43,7 +43,7 @@ template <class Scheme>
 void step(benchmark::State& state, std::string_view instructions) {
   batch::use_instruction_set(instructions);
   const bool paper = std::is_same_v<Scheme, PaperBatches>;
-  const bool liggghts = std::is_same_v<Scheme, LiggghtsBatches>;
+  const bool liggghts = std::is_same_v<Scheme, LiggghtsBatches<LiggghtsVerlet>>;
   const Case setup = case_of(count_of(state), paper ? "paper" : liggghts ? "liggghts" : "yade", paper ? 1e-4 : 5e-5);
   advance(state, setup, [&](World& world) { return make_stepper(setup, world); });
 }
@@ -112,8 +112,8 @@ void move(benchmark::State& state, std::string_view instructions) {
       add("move/" + name, move<Scheme>);
     };
     add_scheme.template operator()<PaperBatches>("paper");
-    add_scheme.template operator()<LiggghtsBatches>("liggghts");
-    add_scheme.template operator()<YadeBatches>("yade");
+    add_scheme.template operator()<LiggghtsBatches<LiggghtsVerlet>>("liggghts");
+    add_scheme.template operator()<YadeBatches<YadeLeapFrog>>("yade");
   }
   return true;
 }();

@@ -32,8 +32,8 @@ class Fault:
 # by, are held against the plain steps bit for bit (tests/solver/batch_test.cpp).
 PLAIN = {
     "BatchedStepper<PaperBatches>>(setup, world)": "PaperStepper<PaperScheme>>(PaperScheme{}, choice.readings, world)",
-    "BatchedStepper<LiggghtsBatches>>(setup, world)": "ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>(setup, world)",
-    "BatchedStepper<YadeBatches>>(setup, world)": "ConventionalStepper<YadeScheme<YadeLeapFrog>>>(setup, world)",
+    "BatchedStepper<LiggghtsBatches<": "ConventionalStepper<LiggghtsScheme<",
+    "BatchedStepper<YadeBatches<": "ConventionalStepper<YadeScheme<",
 }
 
 
@@ -55,8 +55,8 @@ class Workshop:
         schemes = self.sources / "solver" / "src" / "scheme.cpp"
         text = schemes.read_text()
         for batches, plain in PLAIN.items():
-            assert text.count(batches) == 1, f"scheme.cpp holds {batches!r} not just once"
             text = text.replace(batches, plain)
+        assert "BatchedStepper" not in text, "scheme.cpp steps in batches that have no PLAIN steps"
         schemes.write_text(text)
         flags = ["-DBUILD_TESTING=OFF", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1"]
         _quietly("cmake", "-S", self.sources, "-B", self.build, *flags)

@@ -110,11 +110,20 @@ class Batches : public testing::TestWithParam<std::string_view> {
 TEST_P(Batches, GiveTheBitsOfPlainStepsEqs1To24) { give_the_bits_of<PaperBatches, PlainPaper>(); }
 
 TEST_P(Batches, GiveTheBitsOfPlainStepsOfLiggghts) {
-  give_the_bits_of<LiggghtsBatches, ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>();
+  give_the_bits_of<LiggghtsBatches<LiggghtsVerlet>, ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>();
+}
+
+TEST_P(Batches, GiveTheBitsOfPlainStepsOfLiggghtsWithVelocitiesThatAreSet) {
+  give_the_bits_of<LiggghtsBatches<LiggghtsSetVelocities>,
+                   ConventionalStepper<LiggghtsScheme<LiggghtsSetVelocities>>>();
 }
 
 TEST_P(Batches, GiveTheBitsOfPlainStepsOfYade) {
-  give_the_bits_of<YadeBatches, ConventionalStepper<YadeScheme<YadeLeapFrog>>>();
+  give_the_bits_of<YadeBatches<YadeLeapFrog>, ConventionalStepper<YadeScheme<YadeLeapFrog>>>();
+}
+
+TEST_P(Batches, GiveTheBitsOfPlainStepsOfYadeWithAMemoryForce) {
+  give_the_bits_of<YadeBatches<YadeMemoryForce>, ConventionalStepper<YadeScheme<YadeMemoryForce>>>();
 }
 
 INSTANTIATE_TEST_SUITE_P(OnThisMachine, Batches, testing::ValuesIn(batch::instruction_sets()),
@@ -132,11 +141,20 @@ void threads_give_the_bits_of() {
 TEST(Threads, GiveTheBitsOfOne) { threads_give_the_bits_of<PaperBatches, PlainPaper>(); }
 
 TEST(Threads, GiveTheBitsOfOneByTheSchemeOfLiggghts) {
-  threads_give_the_bits_of<LiggghtsBatches, ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>();
+  threads_give_the_bits_of<LiggghtsBatches<LiggghtsVerlet>, ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>();
+}
+
+TEST(Threads, GiveTheBitsOfOneByTheSchemeOfLiggghtsWithVelocitiesThatAreSet) {
+  threads_give_the_bits_of<LiggghtsBatches<LiggghtsSetVelocities>,
+                           ConventionalStepper<LiggghtsScheme<LiggghtsSetVelocities>>>();
 }
 
 TEST(Threads, GiveTheBitsOfOneByTheSchemeOfYade) {
-  threads_give_the_bits_of<YadeBatches, ConventionalStepper<YadeScheme<YadeLeapFrog>>>();
+  threads_give_the_bits_of<YadeBatches<YadeLeapFrog>, ConventionalStepper<YadeScheme<YadeLeapFrog>>>();
+}
+
+TEST(Threads, GiveTheBitsOfOneByTheSchemeOfYadeWithAMemoryForce) {
+  threads_give_the_bits_of<YadeBatches<YadeMemoryForce>, ConventionalStepper<YadeScheme<YadeMemoryForce>>>();
 }
 
 TEST(InstructionSets, RefuseWhatIsNotHere) {

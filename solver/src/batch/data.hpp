@@ -78,12 +78,29 @@ struct VerletGroup : Group {
   Column marked_y;  // [m]
 };
 
-/// YADE's leap-frog.
+/// YADE's leap-frog; of a particle with the memory force twice the mass and inertia.
 struct LeapFrogGroup : Group {
   Column mass;         // [kg]
   Column per_mass;     // [1/kg]
   Column inertia;      // [kg m^2]
   Column per_inertia;  // [1/(kg m^2)]
 };
+
+/// What the averaged displacement inside LIGGGHTS and YADE remembers: the velocities by which particles moved in the
+/// step before that of the discs' `moves` and `turns`.
+struct RateBefore {
+  Column rate_before_x;   // [m/s]
+  Column rate_before_y;   // [m/s]
+  Column turning_before;  // [rad/s]
+};
+
+/// Velocity Verlet with velocities that are set between steps.
+struct SetVelocitiesGroup : VerletGroup, RateBefore {
+  Column mass;     // [kg]
+  Column inertia;  // [kg m^2]
+};
+
+/// Leap-frog with a memory force.
+struct MemoryForceGroup : LeapFrogGroup, RateBefore {};
 
 }  // namespace crossdem::batch

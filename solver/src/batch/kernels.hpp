@@ -46,11 +46,14 @@ struct Moved {
 /// Eqs. (12)-(24), as integrators.hpp.
 Moved move_averaged(std::size_t particles, AveragedGroup* groups, Disc* discs, Load* loads, double gravity, double dt);
 
-/// The second half of a step and the first one of the next, as schemes/liggghts.hpp.
+/// The second half of a step and the first one of the next, as schemes/liggghts.hpp and liggghts_motion.hpp.
 Moved move_verlet(std::size_t particles, VerletGroup* groups, Disc* discs, Load* loads, double dt);
+Moved move_verlet(std::size_t particles, SetVelocitiesGroup* groups, Disc* discs, Load* loads, double dt);
 
-/// As schemes/yade_motion.hpp.
+/// As schemes/yade_motion.hpp; with a memory force under half of gravity.
 Moved move_leap_frog(std::size_t particles, LeapFrogGroup* groups, Disc* discs, Load* loads, double gravity, double dt);
+Moved move_leap_frog(std::size_t particles, MemoryForceGroup* groups, Disc* discs, Load* loads, double gravity,
+                     double dt);
 
 /// The instructions in use, by Highway's names: AVX3 (which is AVX-512), AVX2, SSE4, SSSE3, SCALAR on x86-64.
 std::string_view instruction_set();

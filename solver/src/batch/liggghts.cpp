@@ -103,21 +103,42 @@ void AddLiggghtsForces(std::span<LiggghtsPairs> pairs, const Disc* discs, Load* 
   add_pair_forces(HookePairLaw(parameters, dt, limit_force), pairs, discs, loads);
 }
 
-Moved MoveVerlet(std::size_t particles, VerletGroup* groups, Disc* discs, Load* loads, double step) {
+/// Between two steps, with the velocities as they are at the end of the first.
+HWY_INLINE void set_velocities(Turn<VerletGroup>&, Vector&, Vector) {}
+
+HWY_INLINE void set_velocities(Turn<SetVelocitiesGroup>& t, Vector& spin, Vector dt) {
+  const Vector half = hn::Set(lanes, 0.5);
+  const auto set = [&](Vector& velocity, Vector load, const Column& mass, Column& rate_before) HWY_ATTR {
+    const Vector rate = hn::Sub(velocity, hn::Div(hn::Mul(hn::Mul(half, dt), load), t.of(mass)));
+    velocity = hn::Sub(hn::Mul(hn::Set(lanes, 1.5), rate), hn::Mul(half, t.of(rate_before)));
+    t.put(rate_before, rate);
+  };
+  set(t.moves_x, t.force_x, t.group.mass, t.group.rate_before_x);
+  set(t.moves_y, t.force_y, t.group.mass, t.group.rate_before_y);
+  set(spin, t.turning, t.group.inertia, t.group.turning_before);
+}
+
+template <class AnyGroup>
+HWY_INLINE Moved kick_and_drift(std::size_t particles, AnyGroup* groups, Disc* discs, Load* loads, double step) {
   const Vector dt = hn::Set(lanes, step);
   Largest farthest(particles);
   Largest stride(particles);
   Largest marked(particles);
   for (std::size_t i = 0; i < particles; i += count) {
-    Turn<VerletGroup> t(i, groups, discs, loads);
-    VerletGroup& group = t.group;
+    Turn<AnyGroup> t(i, groups, discs, loads);
+    AnyGroup& group = t.group;
+    t.force_y = hn::Sub(t.force_y, t.of(group.weight));
     const Vector push = t.of(group.push);
     const Vector kick_x = hn::Mul(push, t.force_x);
-    const Vector kick_y = hn::Mul(push, hn::Sub(t.force_y, t.of(group.weight)));
+    const Vector kick_y = hn::Mul(push, t.force_y);
     const Vector turn = hn::Mul(t.of(group.turn), t.turning);
-    t.moves_x = hn::Add(hn::Add(t.moves_x, kick_x), kick_x);
-    t.moves_y = hn::Add(hn::Add(t.moves_y, kick_y), kick_y);
-    const Vector spin = hn::Add(hn::Add(t.of(group.spin), turn), turn);
+    t.moves_x = hn::Add(t.moves_x, kick_x);
+    t.moves_y = hn::Add(t.moves_y, kick_y);
+    Vector spin = hn::Add(t.of(group.spin), turn);
+    set_velocities(t, spin, dt);
+    t.moves_x = hn::Add(t.moves_x, kick_x);
+    t.moves_y = hn::Add(t.moves_y, kick_y);
+    spin = hn::Add(spin, turn);
     t.put(group.spin, spin);
     const Vector displacement_x = hn::Mul(dt, t.moves_x);
     const Vector displacement_y = hn::Mul(dt, t.moves_y);
@@ -132,6 +153,14 @@ Moved MoveVerlet(std::size_t particles, VerletGroup* groups, Disc* discs, Load* 
   return {farthest.value(), stride.value(), marked.value()};
 }
 
+Moved MoveVerlet(std::size_t particles, VerletGroup* groups, Disc* discs, Load* loads, double dt) {
+  return kick_and_drift(particles, groups, discs, loads, dt);
+}
+
+Moved MoveSetVelocities(std::size_t particles, SetVelocitiesGroup* groups, Disc* discs, Load* loads, double dt) {
+  return kick_and_drift(particles, groups, discs, loads, dt);
+}
+
 }  // namespace crossdem::batch::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -140,6 +169,7 @@ namespace crossdem::batch {
 
 HWY_EXPORT(AddLiggghtsForces);
 HWY_EXPORT(MoveVerlet);
+HWY_EXPORT(MoveSetVelocities);
 
 void add_liggghts_forces(std::span<LiggghtsPairs> pairs, const Disc* discs, Load* loads,
                          const ContactParameters& parameters, double dt, bool limit_force) {
@@ -148,6 +178,10 @@ void add_liggghts_forces(std::span<LiggghtsPairs> pairs, const Disc* discs, Load
 
 Moved move_verlet(std::size_t particles, VerletGroup* groups, Disc* discs, Load* loads, double dt) {
   return HWY_DYNAMIC_DISPATCH(MoveVerlet)(particles, groups, discs, loads, dt);
+}
+
+Moved move_verlet(std::size_t particles, SetVelocitiesGroup* groups, Disc* discs, Load* loads, double dt) {
+  return HWY_DYNAMIC_DISPATCH(MoveSetVelocities)(particles, groups, discs, loads, dt);
 }
 
 }  // namespace crossdem::batch

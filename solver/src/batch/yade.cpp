@@ -114,15 +114,32 @@ void AddYadeForces(std::span<YadePairs> pairs, const Disc* discs, Load* loads, c
   add_pair_forces(ViscElPairLaw(parameters, dt), pairs, discs, loads);
 }
 
-Moved MoveLeapFrog(std::size_t particles, LeapFrogGroup* groups, Disc* discs, Load* loads, double gravity,
-                   double step) {
+/// The further load m (w_(t-1) - w_(t-2)) / dt.
+HWY_INLINE void add_memory(Turn<LeapFrogGroup>&, double) {}
+
+HWY_INLINE void add_memory(Turn<MemoryForceGroup>& t, double dt) {
+  const Vector twice = hn::Set(lanes, 2 * dt);  // as the masses are
+  const Vector per_twice = hn::Set(lanes, 1.0 / (2 * dt));
+  const auto add = [&](Vector& load, const Column& mass, Vector rate, Column& rate_before) HWY_ATTR {
+    const Vector change = hn::Sub(rate, t.of(rate_before));
+    load = hn::Add(load, quotient(hn::Mul(t.of(mass), change), twice, per_twice));
+    t.put(rate_before, rate);
+  };
+  add(t.force_x, t.group.mass, t.moves_x, t.group.rate_before_x);
+  add(t.force_y, t.group.mass, t.moves_y, t.group.rate_before_y);
+  add(t.turning, t.group.inertia, t.of(t.group.spin), t.group.turning_before);
+}
+
+template <class AnyGroup>
+HWY_INLINE Moved leap(std::size_t particles, AnyGroup* groups, Disc* discs, Load* loads, double gravity, double step) {
   const Vector dt = hn::Set(lanes, step);
   const Vector fall = hn::Set(lanes, gravity);
   Largest farthest(particles);
   Largest stride(particles);
   for (std::size_t i = 0; i < particles; i += count) {
-    Turn<LeapFrogGroup> t(i, groups, discs, loads);
-    LeapFrogGroup& group = t.group;
+    Turn<AnyGroup> t(i, groups, discs, loads);
+    AnyGroup& group = t.group;
+    add_memory(t, step);
     const Vector mass = t.of(group.mass);
     const Vector per_mass = t.of(group.per_mass);
     t.moves_x = hn::Add(t.moves_x, hn::Mul(dt, quotient(t.force_x, mass, per_mass)));
@@ -141,6 +158,15 @@ Moved MoveLeapFrog(std::size_t particles, LeapFrogGroup* groups, Disc* discs, Lo
   return {.farthest_squared = farthest.value(), .stride_squared = stride.value()};
 }
 
+Moved MoveLeapFrog(std::size_t particles, LeapFrogGroup* groups, Disc* discs, Load* loads, double gravity, double dt) {
+  return leap(particles, groups, discs, loads, gravity, dt);
+}
+
+Moved MoveMemoryForce(std::size_t particles, MemoryForceGroup* groups, Disc* discs, Load* loads, double gravity,
+                      double dt) {
+  return leap(particles, groups, discs, loads, gravity, dt);
+}
+
 }  // namespace crossdem::batch::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -149,6 +175,7 @@ namespace crossdem::batch {
 
 HWY_EXPORT(AddYadeForces);
 HWY_EXPORT(MoveLeapFrog);
+HWY_EXPORT(MoveMemoryForce);
 
 void add_yade_forces(std::span<YadePairs> pairs, const Disc* discs, Load* loads, const ContactParameters& parameters,
                      double dt) {
@@ -158,6 +185,11 @@ void add_yade_forces(std::span<YadePairs> pairs, const Disc* discs, Load* loads,
 Moved move_leap_frog(std::size_t particles, LeapFrogGroup* groups, Disc* discs, Load* loads, double gravity,
                      double dt) {
   return HWY_DYNAMIC_DISPATCH(MoveLeapFrog)(particles, groups, discs, loads, gravity, dt);
+}
+
+Moved move_leap_frog(std::size_t particles, MemoryForceGroup* groups, Disc* discs, Load* loads, double gravity,
+                     double dt) {
+  return HWY_DYNAMIC_DISPATCH(MoveMemoryForce)(particles, groups, discs, loads, gravity, dt);
 }
 
 }  // namespace crossdem::batch

@@ -112,7 +112,7 @@ class BatchedStepper final : public Stepper {
     const bool leads = thread == 0;
     const auto [begin, end] = share(w.particles.count(), thread, crew_.size(), batch::width);
     const auto take_particles = [&, begin = begin, end = end] {
-      blocks_.take(w, begin, end);
+      blocks_.take(w, scheme_, begin, end);
       if constexpr (Scheme::marks) blocks_.take_marks(plain_.marked_at(), begin, end);
     };
     const auto for_own_blocks = [&](auto function) {
@@ -135,7 +135,7 @@ class BatchedStepper final : public Stepper {
           if (leads) finish_wave(w);
           break;
         case Next::list:
-          blocks_.give_back(w, begin, end);
+          blocks_.give_back(w, scheme_, begin, end);
           for_own_blocks(give_back_list);
           crew_.wait_for_all();
           if (leads)
@@ -151,7 +151,7 @@ class BatchedStepper final : public Stepper {
           for_own_blocks(take_list);
           break;
         case Next::end:
-          blocks_.give_back(w, begin, end);
+          blocks_.give_back(w, scheme_, begin, end);
           for_own_blocks(give_back_list);
           return;
       }

@@ -30,7 +30,7 @@ class Blocks {
   }
 
   /// The particles [begin, end) from the world, and back; `begin` is a multiple of batch::width.
-  void take(const World& w, std::size_t begin, std::size_t end) {
+  void take(const World& w, const Scheme& scheme, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       typename Scheme::Group& group = groups_[i / batch::width];
       const std::size_t k = i % batch::width;
@@ -38,20 +38,18 @@ class Blocks {
       discs_[i] = {.x = at.x(), .y = at.y(), .radius = w.particles.radius[i], .radius_again = w.particles.radius[i]};
       loads_[i] = {.work = w.contact_work[i]};
       group.angle[k] = w.particles.angle[i];
-      group.spin[k] = w.particles.spin[i];
-      Scheme::take(w, i, discs_[i], group, k);
+      scheme.take(w, i, discs_[i], group, k);
     }
   }
 
-  void give_back(World& w, std::size_t begin, std::size_t end) const {
+  void give_back(World& w, const Scheme& scheme, std::size_t begin, std::size_t end) const {
     for (std::size_t i = begin; i < end; ++i) {
       const typename Scheme::Group& group = groups_[i / batch::width];
       const std::size_t k = i % batch::width;
       w.particles.position[i] = {discs_[i].x, discs_[i].y};
       w.contact_work[i] = loads_[i].work;
       w.particles.angle[i] = group.angle[k];
-      w.particles.spin[i] = group.spin[k];
-      Scheme::give_back(w, i, discs_[i], loads_[i], group, k);
+      scheme.give_back(w, i, discs_[i], loads_[i], group, k);
     }
   }
 

@@ -20,6 +20,8 @@ struct SurfaceAction {
 /// without carrying its memories on. Of a step's impulses, `share_before` is that of the forces at its start,
 /// `share_after` that of those at its end.
 ///
+/// disc() is how the laws see a disc; set_motion() takes its velocities back.
+///
 /// OwnBar is the bar as the code has it, beside the one of the world: must_list(d) says whether the code makes its
 /// lists of neighbours anew where they matter to it, with particles up to sqrt(d) [m] from where they were then;
 /// advance() follows the bar of the world.
@@ -34,6 +36,7 @@ concept ConventionalScheme = std::constructible_from<typename Scheme::OwnBar, co
   scheme.pair(world, contacts.pairs().front(), advance);
   scheme.after_pairs(world);
   { scheme.disc(world.particles, 0) } -> std::same_as<DiscInMotion>;
+  scheme.set_motion(world.particles, 0, disc.velocity, disc.spin);
   scheme.surface(world, world.surfaces, bar, contacts.on_surfaces().front(), disc, action, advance);
   scheme.finish(world);
   { scheme.spring_energy(world, contacts.pairs().front()) } -> std::same_as<double>;

@@ -1,14 +1,17 @@
 #pragma once
 // What LIGGGHTS and YADE have in common in batches: discs with velocities and spins, evaluated after they have moved.
 
+#include <concepts>
+
 #include "../batch/kernels.hpp"
 #include "conventional.hpp"
 
 namespace crossdem {
 
-template <class Scheme>
+template <class Scheme, class OwnGroup>
 class ConventionalBatches {
  public:
+  using Group = OwnGroup;
   using Plain = ConventionalStepper<Scheme>;
   using OwnBar = typename Scheme::OwnBar;
   static constexpr bool moves_first = true;
@@ -19,19 +22,29 @@ class ConventionalBatches {
   explicit ConventionalBatches(Plain& plain) : scheme_(plain.scheme()) {}
   static OwnBar& bar(Plain& plain) { return plain.bar(); }
 
-  static void take_motion(const World& w, std::size_t i, batch::Disc& disc) {
-    const Particles& p = w.particles;
-    disc.moves_x = p.velocity[i].x();
-    disc.moves_y = p.velocity[i].y();
-    disc.turns = disc.turns_again = p.spin[i];
+  void take(const World& w, std::size_t i, batch::Disc& disc, Group& group, std::size_t k) const {
+    const DiscInMotion motion = scheme_.disc(w.particles, i);
+    disc.moves_x = motion.velocity.x();
+    disc.moves_y = motion.velocity.y();
+    disc.turns = disc.turns_again = group.spin[k] = motion.spin;
+    if constexpr (std::derived_from<Group, batch::RateBefore>) {
+      group.rate_before_x[k] = scheme_.motion().rate_before(i).x();
+      group.rate_before_y[k] = scheme_.motion().rate_before(i).y();
+      group.turning_before[k] = scheme_.motion().turning_before(i);
+    }
   }
 
-  static void give_back_motion(World& w, std::size_t i, const batch::Disc& disc, const batch::Load& load) {
-    w.particles.velocity[i] = {disc.moves_x, disc.moves_y};
+  void give_back(World& w, std::size_t i, const batch::Disc& disc, const batch::Load& load, const Group& group,
+                 std::size_t k) const {
+    if constexpr (std::derived_from<Group, batch::RateBefore>) {
+      scheme_.motion().rate_before(i) = {group.rate_before_x[k], group.rate_before_y[k]};
+      scheme_.motion().turning_before(i) = group.turning_before[k];
+    }
+    scheme_.set_motion(w.particles, i, {disc.moves_x, disc.moves_y}, disc.turns);
     w.loads[i] = {.force = {load.force_x, load.force_y}, .moment = load.turning};
   }
 
-  template <class OnSurface, class Group>
+  template <class OnSurface>
   void surface(const World& w, const Surfaces& surfaces, const OwnBar& bar, OnSurface& contact, const batch::Disc& disc,
                const Group&, batch::Load& load, SurfaceTotals& totals) const {
     Load received{.force = {load.force_x, load.force_y}, .moment = load.turning};

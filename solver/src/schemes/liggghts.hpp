@@ -76,6 +76,7 @@ class LiggghtsScheme {
     }
   }
 
+  [[nodiscard]] Motion& motion() { return motion_; }
   [[nodiscard]] bool limit_force() const { return limit_force_; }
 
   struct HalfKick {
@@ -144,6 +145,11 @@ class LiggghtsScheme {
 
   [[nodiscard]] static DiscInMotion disc(const Particles& p, std::size_t i) {
     return {p.position[i], p.radius[i], Vector2::Zero(), 0.0, p.velocity[i], p.spin[i]};
+  }
+
+  static void set_motion(Particles& p, std::size_t i, const Vector2& velocity, double spin) {
+    p.velocity[i] = velocity;
+    p.spin[i] = spin;
   }
 
   void surface(const World& w, const Surfaces& surfaces, const OwnBar& bar, SurfaceContact<SurfaceMemory>& contact,

@@ -11,6 +11,7 @@ namespace crossdem {
 class LiggghtsVerlet {
  public:
   static constexpr double first_share = 0.5;  // of a step, in which the loads before it act
+  static constexpr bool remembers = false;    // the velocity by which the step before has moved
   explicit LiggghtsVerlet(const Particles&) {}
   static void begin(Particles&) {}
   static void end(World&) {}
@@ -22,6 +23,7 @@ class LiggghtsVerlet {
 class LiggghtsSetVelocities {
  public:
   static constexpr double first_share = 1.0;
+  static constexpr bool remembers = true;
   explicit LiggghtsSetVelocities(const Particles& p)
       : set_(p.velocity), set_spin_(p.spin), rate_before_(p.velocity), turning_before_(p.spin) {}
 
@@ -43,6 +45,10 @@ class LiggghtsSetVelocities {
       turning_before_[i] = turning;
     }
   }
+
+  /// w_(t-1) of particle i [m/s], [rad/s].
+  [[nodiscard]] Vector2& rate_before(std::size_t i) { return rate_before_[i]; }
+  [[nodiscard]] double& turning_before(std::size_t i) { return turning_before_[i]; }
 
  private:
   std::vector<Vector2> set_;            // [m/s], between this step and the next

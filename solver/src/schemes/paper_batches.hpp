@@ -42,6 +42,7 @@ class PaperBatches {
     disc.turns = disc.turns_again = p.radius[i] * p.rotation[i];
     group.velocity_x[k] = p.velocity[i].x();
     group.velocity_y[k] = p.velocity[i].y();
+    group.spin[k] = p.spin[i];
     group.rotation[k] = p.rotation[i];
     group.push[k] = w.dt / p.mass[i];
     group.turn[k] = p.radius[i] * (w.dt / p.inertia[i]);
@@ -52,6 +53,7 @@ class PaperBatches {
     Particles& p = w.particles;
     p.displacement[i] = {disc.moves_x, disc.moves_y};
     p.velocity[i] = {group.velocity_x[k], group.velocity_y[k]};
+    p.spin[i] = group.spin[k];
     p.rotation[i] = group.rotation[k];
   }
 

@@ -44,6 +44,7 @@ class YadeScheme {
         pairs_(in_series(setup.particle_particle, setup.particle_particle, false)),
         walls_(in_series(setup.particle_particle, setup.particle_wall, true)) {}
 
+  [[nodiscard]] Motion& motion() { return motion_; }
   [[nodiscard]] const ContactParameters& pairs() const { return pairs_; }
 
   void move(World& w) {
@@ -79,6 +80,10 @@ class YadeScheme {
 
   [[nodiscard]] DiscInMotion disc(const Particles& p, std::size_t i) const {
     return {p.position[i], p.radius[i], Vector2::Zero(), 0.0, motion_.velocity(p, i), motion_.spin(p, i)};
+  }
+
+  void set_motion(Particles& p, std::size_t i, const Vector2& velocity, double spin) {
+    motion_.set(p, i, velocity, spin);
   }
 
   /// The surface is body 1.

@@ -2,31 +2,33 @@
 // YADE in batches.
 
 #include <span>
+#include <type_traits>
 
 #include "conventional_batches.hpp"
 #include "yade.hpp"
 
 namespace crossdem {
 
-class YadeBatches : public ConventionalBatches<YadeScheme<YadeLeapFrog>> {
+template <class Motion>
+using YadeGroup = std::conditional_t<Motion::remembers, batch::MemoryForceGroup, batch::LeapFrogGroup>;
+
+template <class Motion>
+class YadeBatches : public ConventionalBatches<YadeScheme<Motion>, YadeGroup<Motion>> {
+  using Base = ConventionalBatches<YadeScheme<Motion>, YadeGroup<Motion>>;
+
  public:
-  using Group = batch::LeapFrogGroup;
+  using Base::Base;
+  using typename Base::Group;
   using Pairs = batch::YadePairs;
-  using ConventionalBatches::ConventionalBatches;
   static constexpr bool marks = false;
   static constexpr bool weight_comes_before_surfaces = false;
 
-  static void take(const World& w, std::size_t i, batch::Disc& disc, Group& group, std::size_t k) {
-    take_motion(w, i, disc);
-    group.mass[k] = w.particles.mass[i];
-    group.per_mass[k] = 1.0 / w.particles.mass[i];
-    group.inertia[k] = w.particles.inertia[i];
-    group.per_inertia[k] = 1.0 / w.particles.inertia[i];
-  }
-
-  static void give_back(World& w, std::size_t i, const batch::Disc& disc, const batch::Load& load, const Group&,
-                        std::size_t) {
-    give_back_motion(w, i, disc, load);
+  void take(const World& w, std::size_t i, batch::Disc& disc, Group& group, std::size_t k) const {
+    Base::take(w, i, disc, group, k);
+    group.mass[k] = Motion::inertia_factor * w.particles.mass[i];
+    group.per_mass[k] = 1.0 / group.mass[k];
+    group.inertia[k] = Motion::inertia_factor * w.particles.inertia[i];
+    group.per_inertia[k] = 1.0 / group.inertia[k];
   }
 
   static std::array<double, 4> numbers(const ViscElMemory& memory) {
@@ -38,12 +40,12 @@ class YadeBatches : public ConventionalBatches<YadeScheme<YadeLeapFrog>> {
   }
 
   void add_pair_forces(const World& w, std::span<Pairs> pairs, const batch::Disc* discs, batch::Load* loads) const {
-    batch::add_yade_forces(pairs, discs, loads, scheme().pairs(), w.dt);
+    batch::add_yade_forces(pairs, discs, loads, Base::scheme().pairs(), w.dt);
   }
 
   static batch::Moved move(const World& w, std::size_t particles, Group* groups, batch::Disc* discs,
                            batch::Load* loads) {
-    return batch::move_leap_frog(particles, groups, discs, loads, w.gravity, w.dt);
+    return batch::move_leap_frog(particles, groups, discs, loads, w.gravity / Motion::inertia_factor, w.dt);
   }
 };
 
