@@ -69,6 +69,7 @@ struct RollingSpring {
 
   /// [N m], taken from i and given to its partner; `push` [N] is the contact's. `memory` [N m] as for the shear.
   double moment(const ContactParameters& k, double dt, double push, bool advance, double& memory) const {
+    if (k.rolling_friction == 0.0) return 0.0;
     double moment = memory + turning * (dt * stiffness(k));
     const double cap = std::abs(push) * radius * k.rolling_friction;
     if (std::abs(moment) > cap) moment *= cap / std::abs(moment);
