@@ -65,9 +65,7 @@ class _Bed:
         self.dt = case["time"]["step_s"]
         self.bar = case.get("bar")
         self.tip = self.tip_at_start = packing.bar_tip_m
-        self.bar_steps = 0
-        self.bar_speed = 0.0  # [m/s] downwards
-
+        self.bar_steps, self.bar_speed = 0, 0.0  # [m/s] downwards
         table = packing.particles
         self.radius = table["radius_m"].tolist()
         self.particles = range(len(self.radius))
@@ -107,11 +105,8 @@ class _Bed:
             0.5 * (m * (vx * vx + vy * vy) + inertia * spin * spin)
             for m, inertia, (vx, vy, spin) in zip(self.mass, self.inertia, self.velocity)
         )
-        contacts = sum(
-            touch.overlap > 0
-            for i in self.particles
-            for touch in self.neighbours(i, self.particles[i + 1 :])
-        )
+        pairs = (self.neighbours(i, self.particles[i + 1 :]) for i in self.particles)
+        contacts = sum(touch.overlap > 0 for touches in pairs for touch in touches)
         tip, shaft = self.tip_force, self.bar_force[1] - self.tip_force
         return (*self.bar_force, tip, shaft, self.floor_force, contacts, energy)
 
@@ -228,11 +223,10 @@ class _Bed:
 
     def rolling(self, i: int, touch: _Touch) -> tuple[float, float]:
         """The radius by which i rolls on its partner, and the way."""
-        radius, turn = self.radius[i], self.displacement[i][2]
-        if isinstance(touch.partner, int):
-            r_j = self.radius[touch.partner]
-            radius = radius * r_j / (radius + r_j)
-            turn -= self.displacement[touch.partner][2]
+        j, radius, turn = touch.partner, self.radius[i], self.displacement[i][2]
+        if isinstance(j, int):
+            radius = radius * self.radius[j] / (radius + self.radius[j])
+            turn -= self.displacement[j][2]
         return radius, radius * turn
 
     def force(self, i: int, touch: _Touch) -> tuple[float, float, float]:
@@ -261,8 +255,8 @@ class _Bed:
         if reading["normal_spring"] == "overlap":
             e_n = law["normal_stiffness_N_m"] * touch.overlap
         if e_n < -strength:  # Eq 8
-            if reading["lost_contact"] != "forget":
-                kept = e_n if reading["lost_contact"] == "keep_negative" else 0.0
+            kept = {"keep_zero": 0.0, "keep_negative": e_n}.get(reading["lost_contact"])
+            if kept is not None:
                 self.springs[i, touch.partner] = (kept, 0.0, 0.0)
             return 0.0, 0.0, 0.0
         f_n = e_n + law["normal_damping_N_s_m"] / dt * damped_n  # Eq 6
@@ -272,9 +266,8 @@ class _Bed:
         e_s += law["shear_stiffness_N_m"] * u_s  # Eq 7
         f_s = e_s + law["shear_damping_N_s_m"] / dt * damped_s
         pressed = abs(f_n + strength) if reading["slip_cap"] == "total" else e_n + strength
-        cap = law["friction"] * pressed
-        if abs(e_s) > cap:  # Eq 9
-            f_s = e_s = math.copysign(cap, e_s)
+        if abs(e_s) > law["friction"] * pressed:  # Eq 9
+            f_s = e_s = math.copysign(law["friction"] * pressed, e_s)
 
         radius, rolled = self.rolling(i, touch)
         e_r += law["shear_stiffness_N_m"] * rolled  # as Eqs 7 and 9, without a dashpot

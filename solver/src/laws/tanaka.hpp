@@ -50,7 +50,8 @@ struct TanakaLaw {
                                                                 : std::abs(f.normal + p.tensile_strength);
     f.shear =
         capped(spring.shear, p.shear_stiffness * u.shear, p.friction * pressed, p.shear_damping / dt * u.damped_shear);
-    f.rolling = capped(spring.rolling, p.shear_stiffness * u.rolling, p.rolling_friction * pressed, 0.0);
+    if (p.rolling_friction > 0.0)
+      f.rolling = capped(spring.rolling, p.shear_stiffness * u.rolling, p.rolling_friction * pressed, 0.0);
     return f;
   }
 
