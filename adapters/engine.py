@@ -124,6 +124,20 @@ def unexpressed_readings(case: Case) -> list[str]:
     return found
 
 
+def options(case: Case) -> list[str]:
+    """The key paths of the options beyond the paper's law that `case` has on: joints with a strength, rolling friction."""
+    found = []
+    for kind, contact in case.resolved["contact"].items():
+        keys = ("tensile_strength_N", "rolling_friction")
+        found += [f"contact.{kind}.{key}" for key in keys if contact.get(key)]
+    return found
+
+
+def unexpressed_options(case: Case, own: dict[str, str]) -> list[str]:
+    """Of an engine that lacks the options of `own`, key: sentence, those that `case` has on, as reasons."""
+    return [f"{path}: {own[key]}" for path in options(case) if (key := path.split(".")[-1]) in own]
+
+
 def where_it_differs(case: Case, own: dict[tuple[str, str | None], str]) -> list[str]:
     """Of an engine's `own` readings, (key, value): sentence, those that are not what `case` says."""
     scheme = case.resolved["scheme"]

@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 from .case import Case
-from .engine import INPUTS, Code, EngineNotFound, unexpressed_readings
+from .engine import INPUTS, Code, EngineNotFound, unexpressed_options, unexpressed_readings
 from .liggghts import ERROR_LINE, NO_MPI_DAEMON, said_version
 from .liggghts_input import number, particles
 from .packing import Packing
@@ -14,6 +14,7 @@ from .schedule import Schedule
 
 # What the deck includes, by whether the case has a bar.
 BAR_DECKS = [Path(__file__).with_name(f"lammps_bars_{bars}.in") for bars in (0, 1)]
+LACKS = dict.fromkeys(("tensile_strength_N", "rolling_friction"), "is not in its deck")
 
 
 class Lammps(Code):
@@ -39,7 +40,7 @@ class Lammps(Code):
         return Schedule.of(case.resolved, case.step_s("liggghts"))
 
     def unsupported(self, case: Case) -> list[str]:
-        found = unexpressed_readings(case)
+        found = [*unexpressed_readings(case), *unexpressed_options(case, LACKS)]
         if case.resolved["scheme"]["attraction"] == "clipped":
             found.append("its dashpots may pull; scheme.attraction = clipped is not in its deck")
         for pair, contact in case.resolved["contact"].items():

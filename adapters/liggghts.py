@@ -23,10 +23,12 @@ from .engine import (
     Engine,
     EngineFailure,
     EngineNotFound,
+    options,
+    unexpressed_options,
     unexpressed_readings,
     where_it_differs,
 )
-from .liggghts_input import bar, half_depth_m, numbering, numbers, particles
+from .liggghts_input import bar, half_depth_m, numbering, numbers, particles, resisting_rolling
 from .packing import Packing
 from .sample_table import SAMPLE_COLUMNS, frame_times, resistance_table, whole_lines
 from .schedule import Schedule
@@ -34,6 +36,12 @@ from .schedule import Schedule
 # What the deck includes, by whether the case has a bar and by whether displacements are averaged.
 BAR_DECKS = [Path(__file__).with_name(f"liggghts_bars_{bars}.in") for bars in (0, 1)]
 INTEGRATOR_DECKS = [Path(__file__).with_name(f"liggghts_averaged_{number}.in") for number in (0, 1)]
+ROLLING_DECK = Path(__file__).with_name("liggghts_rolling.in")
+# src/cohesion_model_*.h of LIGGGHTS-PUBLIC 3.8: sjkr, sjkr2, easo/capillary/viscous, washino/capillary/viscous.
+LACKS = {
+    "tensile_strength_N": "its models of cohesion attract by the area of contact (sjkr) or by a liquid bridge (easo, washino); none "
+    "is a spring that carries tension up to a strength"
+}
 SAMPLES = f"{OUTPUT}/samples.txt"
 FRAMES = f"{OUTPUT}/frames.txt"
 FRAME_COLUMNS = ("id", "x_m", "y_m", "vx_m_s", "vy_m_s", "omega_rad_s")
@@ -73,7 +81,7 @@ class Liggghts(Engine):
         return super().environment() | NO_MPI_DAEMON
 
     def unsupported(self, case: Case) -> list[str]:
-        return unexpressed_readings(case)
+        return [*unexpressed_readings(case), *unexpressed_options(case, LACKS)]
 
     def limitations(self, case: Case) -> list[str]:
         own = {
@@ -103,6 +111,11 @@ class Liggghts(Engine):
             "near a corner of the bar, a disc on its side may feel side and corner at once",
             "keeps no angles of the particles",
             "of the readings in [scheme] follows only attraction",
+            *(
+                ["resists rolling by up to mu_r times the absolute total normal force"]
+                if options(case)
+                else []
+            ),
         ]
 
     def command(self, case: Case, run_dir: Path) -> list[str]:
@@ -131,8 +144,14 @@ class Liggghts(Engine):
             texts["bar.stl"] = bar(case.resolved, packing)
         for name, text in texts.items():
             (inputs / name).write_text(text, encoding="ascii")
-        for included in (BAR_DECKS["bar" in case.resolved], INTEGRATOR_DECKS[self.averaged]):
+        decks = [BAR_DECKS["bar" in case.resolved], INTEGRATOR_DECKS[self.averaged]]
+        for included in decks:
             shutil.copyfile(included, inputs / included.name)
+        if options(case):  # of which it has none but that against rolling
+            shutil.copyfile(ROLLING_DECK, inputs / ROLLING_DECK.name)
+            for name in (self.script.name, decks[0].name):
+                text = (inputs / name).read_text(encoding="ascii")
+                (inputs / name).write_text(resisting_rolling(text), encoding="ascii")
 
     def read_output(self, case: Case, packing: Packing, run_dir: Path, manifest: dict) -> Dataset:
         schedule = self.schedule(case)

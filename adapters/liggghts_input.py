@@ -7,6 +7,7 @@ import math
 from .packing import Packing
 from .schedule import Schedule
 
+PAIRS = ("particle_particle", "particle_wall")
 MOST_IN_ONE_BIN = 5000  # discs: finding neighbours among all of them takes their number squared
 
 
@@ -49,14 +50,23 @@ def numbers(case: dict, schedule: Schedule, packing: Packing, averaged: bool) ->
     }
     if "bar" in case:
         found |= {"speed": case["bar"]["speed_m_s"], "bar_tip_m": packing.bar_tip_m}
-    for suffix, pair in (("particle", "particle_particle"), ("wall", "particle_wall")):
+    for suffix, pair in zip(("particle", "wall"), PAIRS):
         contact = case["contact"][pair]
         found[f"kn_{suffix}"] = contact["normal_stiffness_N_m"]
         found[f"kt_{suffix}"] = contact["shear_stiffness_N_m"]
         found[f"gamman_{suffix}"] = contact["normal_damping_N_s_m"]
         found[f"gammat_{suffix}"] = contact["shear_damping_N_s_m"]
         found[f"friction_{suffix}"] = contact["friction"]
+    rolling = [case["contact"][pair].get("rolling_friction", 0.0) for pair in PAIRS]
+    if any(rolling):
+        found |= {"rolling_particle": rolling[0], "rolling_wall": rolling[1]}
     return "".join(f"variable {name} string {number(value)}\n" for name, value in found.items())
+
+
+def resisting_rolling(deck: str) -> str:
+    """`deck` with springs against rolling in every contact, LIGGGHTS' "rolling_friction epsd2"."""
+    deck = deck.replace("tangential history", "tangential history rolling_friction epsd2")
+    return deck.replace("\npair_style", "\ninclude         inputs/liggghts_rolling.in\npair_style")
 
 
 def particles(case: dict, packing: Packing, half_depth_m: float) -> str:

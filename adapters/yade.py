@@ -21,6 +21,7 @@ from .engine import (
     Engine,
     EngineFailure,
     EngineNotFound,
+    unexpressed_options,
     unexpressed_readings,
     where_it_differs,
 )
@@ -32,6 +33,13 @@ PYTHON = "/usr/bin/python3"  # YADE's modules are built for the system's Python
 SAMPLES = f"{OUTPUT}/samples.csv"
 FRAMES = f"{OUTPUT}/frames.f64"
 VALUES_PER_PARTICLE = 6  # x, y, vx, vy, angle, angular velocity
+# As YADE itself documents Law2_ScGeom_ViscElPhys_Basic, ViscElMat.mRtype and the laws of CohFrictPhys and ViscElCapPhys.
+LACKS = {
+    "tensile_strength_N": "its law with dashpots carries no tension; its bonds (CohFrictPhys) have no dashpots, and its liquid "
+    "bridges (ViscElCapPhys) pull by their own law",
+    "rolling_friction": "its law has no spring against rolling, only a moment by the direction or the rate of rolling (mR, mRtype), "
+    "which holds nothing at rest",
+}
 
 
 class Yade(Engine):
@@ -58,7 +66,7 @@ class Yade(Engine):
         return _version()
 
     def unsupported(self, case: Case) -> list[str]:
-        found = unexpressed_readings(case)
+        found = [*unexpressed_readings(case), *unexpressed_options(case, LACKS)]
         pair = case.resolved["contact"]["particle_particle"]
         wall = case.resolved["contact"]["particle_wall"]
         for key, value in wall.items():

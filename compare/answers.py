@@ -82,6 +82,21 @@ ANSWERS = {
             exact.rolling_speed,
             most=1,
         ),
+        Answer(
+            "slowing of rolling / g",
+            "",
+            measures.rolling_slowing_over_g,
+            exact.rolling_slowing,
+            most=1,
+            every_step=True,
+        ),
+        Answer(
+            "parting / pulling speed",
+            "",
+            measures.parting_over_pulling_speed,
+            exact.parting_speed,
+            most=2,
+        ),
         Answer("sink / bar speed", "", measures.sink_over_bar_speed, exact.sink, most=1, bar=True),
         Answer(
             "rolling / bar speed",

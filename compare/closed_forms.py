@@ -75,6 +75,23 @@ def rolling_speed(speed: float, spin: float, radius: float, arm: float) -> float
     return speed - (speed + arm * spin) / (1 + 2 * (arm / radius) ** 2)
 
 
+def rolling_slowing(rolling_friction: float, radius: float, arm: float) -> float:
+    """By how much a disc that rolls on the floor slows down, over g.
+
+    The floor's force F brakes, m v' = -F, and keeps it rolling at the `arm` a: v = -a w. The moment M against rolling is
+    at its cap mu_r r m g: I w' = M - a F. With I = m r^2 / 2 that is v' = -M a / (I + m a^2): 2/3 mu_r g with the arm r.
+    """
+    return rolling_friction * radius * arm / (radius**2 / 2 + arm**2)
+
+
+def parting_speed_from_joint(strength: float, stiffness: float, mass: float, speed: float) -> float:
+    """Of two that are drawn apart at `speed` and break their joint, which holds T^2 / 2 k then: m v^2 / 2 is less by that.
+
+    0 where they cannot break it. `mass`: the reduced one.
+    """
+    return math.sqrt(max(0.0, speed**2 - strength**2 / (stiffness * mass)))
+
+
 def pinched_sink(bar_speed: float, wall_arm: float, bar_arm: float) -> float:
     """Speed downwards of a disc that rolls, without slip, between a wall at rest and a bar that moves down.
 

@@ -76,6 +76,19 @@ def rolling_speed(start: Start, law: EngineLaw) -> float:
     return speed / start.slip()
 
 
+def rolling_slowing(start: Start, law: EngineLaw) -> float:
+    contact, radius = start.contact(), float(start.radius[0])
+    arm = law.wall_arm(radius, start.weight / contact["normal_stiffness_N_m"])
+    return closed_forms.rolling_slowing(contact.get("rolling_friction", 0.0), radius, arm)
+
+
+def parting_speed(start: Start, law: EngineLaw) -> float:
+    contact, speed = start.contact(), -start.approach(start.velocity)
+    strength, stiffness = contact.get("tensile_strength_N", 0.0), contact["normal_stiffness_N_m"]
+    left = closed_forms.parting_speed_from_joint(strength, stiffness, start.reduced_mass, speed)
+    return left / speed
+
+
 def _pinch(start: Start, law: EngineLaw) -> tuple[float, float, float, float]:
     """Speed of the bar, arms at wall and bar, and the overlap, alike at both: half of what the gap lacks."""
     bar = start.case["bar"]

@@ -37,8 +37,14 @@ class Ladder:
         return [rung for rung in self.rungs if (rung.case, rung.engine) == (case, engine)]
 
     @property
+    def compared(self) -> list[Rung]:
+        """The rungs whose engine offers what they ask for."""
+        return [rung for rung in self.rungs if rung.outcome != rungs.NO_SUCH_LAW]
+
+    @property
     def word(self) -> str:
-        outcomes = {rung.outcome for rung in self.rungs}
+        """An engine may lack the law of some cases, but not of all: agreement is never said of nothing."""
+        outcomes = {rung.outcome for rung in self.compared}
         for outcome, word in (
             (rungs.DIFFERS, DIFFERS),
             (rungs.NO_RESULT, ENGINE_FAILED),
@@ -46,7 +52,8 @@ class Ladder:
         ):
             if outcome in outcomes:
                 return word
-        return AGREES if self.rungs else INCONCLUSIVE
+        idle = {rung.engine for rung in self.rungs} - {rung.engine for rung in self.compared}
+        return AGREES if self.compared and not idle else INCONCLUSIVE
 
     @property
     def exit_code(self) -> ExitCode:
@@ -61,14 +68,20 @@ class Ladder:
             INCONCLUSIVE: rungs.NOT_COMPARABLE,
         }.get(self.word)
         found = [rung for rung in self.rungs if rung.outcome == wanted]
+        lacking = [rung for rung in self.rungs if rung.outcome == rungs.NO_SUCH_LAW]
+        if self.word == INCONCLUSIVE and not found:
+            found = lacking
         if not self.rungs:
             return "There is nothing to compare: no case has a twin or an answer."
         if not found:
             unasked = " No case has an [[answer]]: each engine was held against its twin alone."
             asked = any(rung.kind == rungs.CLOSED_FORM for rung in self.rungs)
+            apart = sorted({f"{rung.engine} on {rung.case}" for rung in lacking})
             return (
-                f"{listed(self.engines)}: every one of {plural(len(self.rungs), 'rung')} on "
-                f"{plural(len(self.cases), 'case')} holds." + ("" if asked else unasked)
+                f"{listed(self.engines)}: every one of {plural(len(self.compared), 'rung')} on "
+                f"{plural(len(self.cases), 'case')} holds."
+                + (f" Not comparable: {listed(apart)}." if apart else "")
+                + ("" if asked else unasked)
             )
         first = found[0]
         return (

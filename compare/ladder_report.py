@@ -32,12 +32,14 @@ TONES = {
     rungs.DIFFERS: "red",
     rungs.NO_RESULT: "magenta",
     rungs.NOT_COMPARABLE: "yellow",
+    rungs.NO_SUCH_LAW: "dim",
 }
 ENDS = {
     rungs.AGREES: None,
     rungs.DIFFERS: "failure",
     rungs.NO_RESULT: "error",
     rungs.NOT_COMPARABLE: "error",
+    rungs.NO_SUCH_LAW: "skipped",
 }
 
 
@@ -91,14 +93,20 @@ def print_ladder(ladder: Ladder, page: Path, console: Console | None = None) -> 
     console.print(
         Text("Of several answers the one that uses up most of its tolerance.", style="dim")
     )
-    for rung in ladder.rungs:
-        if rung.outcome != rungs.AGREES:
-            line = f"{rung.case}, {rung.engine}, {rung.name}: {rung.sentence}"
-            console.print(Text(printable(line), style=TONES[rung.outcome]), soft_wrap=True)
+    for line, outcome in dict.fromkeys(_said(rung) for rung in ladder.rungs):
+        if outcome != rungs.AGREES:
+            console.print(Text(printable(line), style=TONES[outcome]), soft_wrap=True)
     console.print(Text(ladder.word, style=f"bold {COLOURS[ladder.word]}"))
     console.print(Text(printable(ladder.sentence)), soft_wrap=True)
     console.print(Text(f"Next: {ladder.next_step}"), soft_wrap=True)
     console.print(Text(f"Report: {page}"), soft_wrap=True)
+
+
+def _said(rung: rungs.Rung) -> tuple[str, str]:
+    """A line and its tone's outcome; an engine that lacks the law of a case says so once."""
+    whole = rung.outcome == rungs.NO_SUCH_LAW
+    place = f"{rung.case}, {rung.engine}" + ("" if whole else f", {rung.name}")
+    return f"{place}: {rung.sentence}", rung.outcome
 
 
 def _console() -> Console:
@@ -128,7 +136,7 @@ def _values(ladder: Ladder) -> dict:
         "title": f"Ladder: {ladder.name}",
         "colours": {engine: style.colour for engine, style in styles.items()},
         "engines": ladder.engines,
-        "held": f"{held} of {plural(len(ladder.rungs), 'rung')}",
+        "held": f"{held} of {plural(len(ladder.compared), 'rung')}",
         "on": plural(len(ladder.cases), "case"),
         "outcomes": {(row[0][0], row[0][1]): row[1] for row in tables.summary_rows(ladder)},
         "blocks": blocks,

@@ -26,6 +26,7 @@ from .progress import ProgressDisplay
 from .refinement import LEVELS
 from .rungs import (
     CLOSED_FORM,
+    NO_SUCH_LAW,
     NOT_COMPARABLE,
     TWIN,
     Rung,
@@ -210,9 +211,11 @@ class _Runs:
         if twin is None:
             return []
         about = f"native in the scheme {TWIN_SCHEMES[self.engine]}"
+        if missing := self._missing(TWIN, about, [0]):
+            return [missing]
         if isinstance(twin, str):
             return [self._without(TWIN, about, twin, NOT_COMPARABLE)]
-        if missing := self._missing(TWIN, about, [0, TWIN]):
+        if missing := self._missing(TWIN, about, [TWIN]):
             return [missing]
         run, other = self._dataset(0), self._dataset(TWIN)
         return [twin_rung(self.case, self.engine, about, run, other.motion)]
@@ -248,7 +251,7 @@ class _Runs:
             if result.failure is None:
                 continue
             if result.status == "unsupported":
-                return self._without(kind, about, result.failure, NOT_COMPARABLE)
+                return self._without(kind, about, f"not comparable: {result.failure}", NO_SUCH_LAW)
             whose = "its twin: " if key == TWIN else ""
             return self._without(kind, about, f"{whose}{result.failure}")
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .ladder import Ladder
-from .outcomes import AGREES, DIFFERS, NO_RESULT, NOT_COMPARABLE
+from .outcomes import AGREES, DIFFERS, NO_RESULT, NO_SUCH_LAW, NOT_COMPARABLE
 from .rungs import AnswerRung, Rung, TwinRung
 from .wording import MINUS, number
 
@@ -155,7 +155,7 @@ def _concern(rung: Rung) -> tuple[bool, bool, float]:
 
 
 def _worst(outcomes: list[str]) -> str:
-    for outcome in (DIFFERS, NO_RESULT, NOT_COMPARABLE):
+    for outcome in (DIFFERS, NO_RESULT, NOT_COMPARABLE, NO_SUCH_LAW):
         if outcome in outcomes:
             return outcome
     return AGREES if outcomes else "nothing asked"

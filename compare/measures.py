@@ -95,6 +95,20 @@ def rolling_speed_over_slip(run: Dataset) -> float:
     return float(run.motion.velocity_m_s[-1, 0, 0]) / Start.of(run.case).slip()
 
 
+def rolling_slowing_over_g(run: Dataset) -> float:
+    """Speed to the right that the first particle loses in the second half of the time, over g times that time."""
+    middle = len(run.motion.time_s) // 2
+    lost_m_s = float(run.motion.velocity_m_s[middle, 0, 0] - run.motion.velocity_m_s[-1, 0, 0])
+    time_s = float(run.motion.time_s[-1] - run.motion.time_s[middle])
+    return lost_m_s / (Start.of(run.case).gravity * time_s)
+
+
+def parting_over_pulling_speed(run: Dataset) -> float:
+    """Speed of parting of two particles at the end, over that at which they are drawn apart at the start."""
+    start = Start.of(run.case)
+    return start.approach(run.motion.velocity_m_s[-1]) / start.approach(start.velocity)
+
+
 def sink_over_bar_speed(run: Dataset) -> float:
     """Speed downwards of the first particle at the end, over that of the bar."""
     return fall_speed_m_s(run) / run.case["bar"]["speed_m_s"]

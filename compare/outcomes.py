@@ -8,6 +8,7 @@ INCONCLUSIVE = "inconclusive"
 # Of what has no scatter: a rung of the ladder, a comparison particle by particle.
 AGREES = "agrees"
 DIFFERS = "differs"
+NO_SUCH_LAW = "not offered"  # the engine says itself that it cannot run the case faithfully
 
 # Of either.
 NOT_COMPARABLE = "not comparable"

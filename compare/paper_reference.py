@@ -1,7 +1,7 @@
 """The paper's scheme once more, in plain Python, equation by equation: what the native solver is checked against.
 
-Written from the paper (Eqs 1-24) and the list of its readings, not from the solver: every pair is looked at in every
-step, and nothing is fast. Good for a few dozen particles. What it shares with the solver is the order of the sums and
+Written from the paper (Eqs 1-24), the list of its readings and the two options beyond it (joints with a strength, springs
+against rolling), not from the solver: every pair is looked at in every step, and nothing is fast. Good for a few dozen particles. What it shares with the solver is the order of the sums and
 which constants are multiplied first, so that the two can come to the same bits. Units are SI; angles count
 counter-clockwise.
 """
@@ -52,7 +52,7 @@ class _Touch(NamedTuple):
 
     partner: int | str  # another particle, or a wall or the bar by name
     law: dict  # the parameters of the contact
-    overlap: float  # [m] > 0
+    overlap: float  # [m] > 0, in a joint also below
     cos: float  # of alpha: the direction from i's centre to the partner
     sin: float
 
@@ -65,9 +65,7 @@ class _Bed:
         self.dt = case["time"]["step_s"]
         self.bar = case.get("bar")
         self.tip = self.tip_at_start = packing.bar_tip_m
-        self.bar_steps = 0
-        self.bar_speed = 0.0  # [m/s] downwards
-
+        self.bar_steps, self.bar_speed = 0, 0.0  # [m/s] downwards
         table = packing.particles
         self.radius = table["radius_m"].tolist()
         self.particles = range(len(self.radius))
@@ -81,15 +79,16 @@ class _Bed:
         before = self.dt if self.reading["initial_displacement"] == "velocity" else 0.0
         self.displacement = [[before * component for component in v] for v in self.velocity]
 
-        # (particle, partner): (e_n, e_s); "in turn" has two entries for a pair
+        # (particle, partner): (e_n, e_s, e_r); "in turn" has two entries for a pair
+        self.springs_before = {}
         self.springs = {
-            (i, touch.partner): (touch.law["normal_stiffness_N_m"] * touch.overlap, 0.0)
+            (i, touch.partner): (touch.law["normal_stiffness_N_m"] * touch.overlap, 0.0, 0.0)
             for i in self.particles
             for touch in (*self.neighbours(i, self.particles), *self.surfaces(i))
         }
         self.clear_loads()
         # The forces until the first evaluation, and of an integrator's first kick: those of the springs as they are.
-        self.collect_all(lambda i, touch: (self.springs[i, touch.partner][0], 0.0))
+        self.collect_all(lambda i, touch: (self.springs[i, touch.partner][0], 0.0, 0.0))
 
     def start_bar(self) -> None:
         self.bar_speed = self.bar["speed_m_s"] if self.bar else 0.0
@@ -106,9 +105,8 @@ class _Bed:
             0.5 * (m * (vx * vx + vy * vy) + inertia * spin * spin)
             for m, inertia, (vx, vy, spin) in zip(self.mass, self.inertia, self.velocity)
         )
-        contacts = sum(
-            1 for i in self.particles for _ in self.neighbours(i, self.particles[i + 1 :])
-        )
+        pairs = (self.neighbours(i, self.particles[i + 1 :]) for i in self.particles)
+        contacts = sum(touch.overlap > 0 for touches in pairs for touch in touches)
         tip, shaft = self.tip_force, self.bar_force[1] - self.tip_force
         return (*self.bar_force, tip, shaft, self.floor_force, contacts, energy)
 
@@ -137,22 +135,24 @@ class _Bed:
         """The loads of all contacts, each pair once."""
         for i in self.particles:
             for touch in self.neighbours(i, self.particles[i + 1 :]):
-                f_n, f_s = force(i, touch)
-                self.receive(i, touch, f_n, f_s)
+                f_n, f_s, moment = force(i, touch)
+                self.receive(i, touch, f_n, f_s, moment)
                 seen_from_j = touch._replace(cos=-touch.cos, sin=-touch.sin)
-                self.receive(touch.partner, seen_from_j, f_n, f_s)
+                self.receive(touch.partner, seen_from_j, f_n, f_s, -moment)
         for i in self.particles:
             for touch in self.surfaces(i):
                 self.receive(i, touch, *force(i, touch))
 
     def neighbours(self, i: int, others: range) -> Iterator[_Touch]:
-        """Those of `others` in contact with particle i."""
+        """Those of `others` in contact with particle i, or held by a joint that its strength would not stretch so far."""
         x, y, _ = self.position[i]
         r, law = self.radius[i], self.case["contact"]["particle_particle"]
+        stretch = law.get("tensile_strength_N", 0.0) / law["normal_stiffness_N_m"]
         for j in others:
             dx, dy = self.position[j][0] - x, self.position[j][1] - y
             reach = r + self.radius[j]
-            if dx * dx + dy * dy < reach * reach and j != i:
+            farthest = reach + (stretch if (i, j) in self.springs_before else 0.0)
+            if dx * dx + dy * dy < farthest * farthest and j != i:
                 distance = math.sqrt(dx * dx + dy * dy)
                 inverse = 1 / distance
                 yield _Touch(j, law, reach - distance, dx * inverse, dy * inverse)
@@ -182,17 +182,18 @@ class _Bed:
         return min(max(x, centre - half), centre + half) - x, min(max(y, self.tip), top) - y
 
     def clear_loads(self) -> None:
-        self.load = [[0.0, 0.0, 0.0] for _ in self.particles]  # X, Y, -M / r
+        self.load = [[0.0] * 4 for _ in self.particles]  # X, Y, -M / r, moment against rolling
         self.bar_force, self.tip_force, self.floor_force = (0.0, 0.0), 0.0, 0.0
 
-    def receive(self, i: int, touch: _Touch, f_n: float, f_s: float) -> None:
-        """Eqs 10-12."""
+    def receive(self, i: int, touch: _Touch, f_n: float, f_s: float, moment: float) -> None:
+        """Eqs 10-12; the `moment` against rolling is taken from i."""
         x = -f_n * touch.cos + f_s * touch.sin
         y = -f_n * touch.sin - f_s * touch.cos
         load = self.load[i]
         load[0] += x
         load[1] += y
         load[2] += self.lever(i, touch) * f_s
+        load[3] -= moment
         if touch.partner == "bar":
             self.bar_force = (self.bar_force[0] - x, self.bar_force[1] - y)
             if self.position[i][1] < self.tip:
@@ -220,14 +221,23 @@ class _Bed:
             turning += self.arm(touch.partner, touch) * turn_j
         return x * touch.cos + y * touch.sin, -x * touch.sin + y * touch.cos + turning
 
-    def force(self, i: int, touch: _Touch) -> tuple[float, float]:
-        """Eqs 1-9: f_n and f_s of one contact."""
+    def rolling(self, i: int, touch: _Touch) -> tuple[float, float]:
+        """The radius by which i rolls on its partner, and the way."""
+        j, radius, turn = touch.partner, self.radius[i], self.displacement[i][2]
+        if isinstance(j, int):
+            radius = radius * self.radius[j] / (radius + self.radius[j])
+            turn -= self.displacement[j][2]
+        return radius, radius * turn
+
+    def force(self, i: int, touch: _Touch) -> tuple[float, float, float]:
+        """Eqs 1-9: f_n and f_s of one contact, and the moment against rolling."""
         reading, law, dt = self.reading, touch.law, self.dt
         u_n, u_s = self.relative(self.displacement, i, touch, -self.bar_speed * dt)
         damped_n, damped_s = u_n, u_s
-        e_n, e_s = self.springs_before.get((i, touch.partner), (None, None))
+        strength = law.get("tensile_strength_N", 0.0)
+        e_n, e_s, e_r = self.springs_before.get((i, touch.partner), (None, None, None))
         if e_n is None:
-            e_n = e_s = 0.0
+            e_n = e_s = e_r = 0.0
             u_s *= {  # Eq 4
                 "clamped_share": min(touch.overlap / u_n, 1.0) if u_n > 0 else 0.0,
                 "raw_share": touch.overlap / u_n if u_n != 0 else 0.0,
@@ -244,22 +254,26 @@ class _Bed:
         e_n += law["normal_stiffness_N_m"] * u_n  # Eq 5
         if reading["normal_spring"] == "overlap":
             e_n = law["normal_stiffness_N_m"] * touch.overlap
-        if e_n < 0:  # Eq 8
-            if reading["lost_contact"] != "forget":
-                kept = e_n if reading["lost_contact"] == "keep_negative" else 0.0
-                self.springs[i, touch.partner] = (kept, 0.0)
-            return 0.0, 0.0
+        if e_n < -strength:  # Eq 8
+            kept = {"keep_zero": 0.0, "keep_negative": e_n}.get(reading["lost_contact"])
+            if kept is not None:
+                self.springs[i, touch.partner] = (kept, 0.0, 0.0)
+            return 0.0, 0.0, 0.0
         f_n = e_n + law["normal_damping_N_s_m"] / dt * damped_n  # Eq 6
         if reading["attraction"] == "clipped":
-            f_n = max(f_n, 0.0)
+            f_n = max(f_n, -strength)
 
         e_s += law["shear_stiffness_N_m"] * u_s  # Eq 7
         f_s = e_s + law["shear_damping_N_s_m"] / dt * damped_s
-        cap = law["friction"] * (abs(f_n) if reading["slip_cap"] == "total" else e_n)
-        if abs(e_s) > cap:  # Eq 9
-            f_s = e_s = math.copysign(cap, e_s)
-        self.springs[i, touch.partner] = (e_n, e_s)
-        return f_n, f_s
+        pressed = abs(f_n + strength) if reading["slip_cap"] == "total" else e_n + strength
+        if abs(e_s) > law["friction"] * pressed:  # Eq 9
+            f_s = e_s = math.copysign(law["friction"] * pressed, e_s)
+
+        radius, rolled = self.rolling(i, touch)
+        e_r += law["shear_stiffness_N_m"] * rolled  # as Eqs 7 and 9, without a dashpot
+        e_r = math.copysign(min(abs(e_r), law.get("rolling_friction", 0.0) * pressed), e_r)
+        self.springs[i, touch.partner] = (e_n, e_s, e_r)
+        return f_n, f_s, radius * e_r
 
     def move(self, i: int) -> None:
         """Eqs 13-24 for particle i; velocity Verlet has moved it before, and gives it the second half of its kick."""
@@ -271,10 +285,11 @@ class _Bed:
 
     def accelerate(self, i: int, dt: float) -> None:
         """Eqs 12-18."""
-        x, y, shear = self.load[i]
+        x, y, shear, moment = self.load[i]
         push, turn = dt / self.mass[i], self.radius[i] * (dt / self.inertia[i])
         gained = (x * push, y * push - self.case["gravity_m_s2"] * dt, -shear * turn)
         self.velocity[i] = [v + more for v, more in zip(self.velocity[i], gained)]
+        self.velocity[i][2] += moment * (dt / self.inertia[i])
 
     def displace(self, i: int, averaged: bool) -> None:
         """Eqs 19-24; if not averaged, a step's displacement is velocity times time."""

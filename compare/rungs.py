@@ -17,7 +17,7 @@ from crossdem.adapters.dataset import Dataset, Motion
 
 from .answers import ANSWERS, Answer
 from .engine_laws import engine_law
-from .outcomes import AGREES, DIFFERS, NO_RESULT, NOT_COMPARABLE
+from .outcomes import AGREES, DIFFERS, NO_RESULT, NO_SUCH_LAW, NOT_COMPARABLE
 from .refinement import extrapolated, observed_order
 from .start import Start
 from .wording import MINUS, number

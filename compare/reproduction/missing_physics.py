@@ -15,6 +15,7 @@ from .soil_motion import AS_PRINTED
 from .study import Claim, Findings, Picture, Setting
 
 STRENGTHS_N = (0.02, 0.05, 0.1)  # of a joint; a disc weighs 2 to 3 mN
+REST_S = 4.0  # a packing holds no stretched joints: the bed settles anew
 ROLLING = (0.1, 0.3)  # coefficients of rolling friction
 
 
@@ -26,7 +27,10 @@ def cohesive() -> list[Setting]:
     return [
         Setting(
             f"cohesion {1000 * strength_N:g} mN",
-            (f"contact.particle_particle.tensile_strength_N={strength_N}",),
+            (
+                f"contact.particle_particle.tensile_strength_N={strength_N}",
+                f"time.rest_s={REST_S}",
+            ),
         )
         for strength_N in STRENGTHS_N
     ]

@@ -13,13 +13,28 @@ from crossdem.adapters.workspace import Workspace
 from ..progress import ProgressDisplay
 from ..runs import here
 from ..stability_runs import map_stability
-from . import assumptions, hard_balls, penetration_resistance, soil_motion, time_step, wall_friction
+from . import (
+    assumptions,
+    hard_balls,
+    missing_physics,
+    penetration_resistance,
+    soil_motion,
+    time_step,
+    wall_friction,
+)
 from .collisions import collide
 from .runs import Found, Size, run_settings
 from .study import Claim, Findings
 
 REST_S = 2.0  # at least: beds under another friction, or of finer discs, take longer to rest than those of the case
-STUDIES = (soil_motion, wall_friction, penetration_resistance, hard_balls, assumptions)
+STUDIES = (
+    soil_motion,
+    wall_friction,
+    penetration_resistance,
+    hard_balls,
+    missing_physics,
+    assumptions,
+)
 
 
 @dataclass(frozen=True)

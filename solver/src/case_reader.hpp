@@ -34,6 +34,9 @@ class Reader {
     }
   }
 
+  /// A number >= 0 beyond the paper's law, 0 where the case says nothing.
+  void option(const std::string& key, double& value) { number(key, value, Range::non_negative, 0.0); }
+
   void numbers(const std::string& key, std::vector<double>& values, Range range,
                const std::optional<std::vector<double>>& fallback = std::nullopt) {
     const auto* entry = find(key, fallback.has_value());

@@ -29,6 +29,7 @@ void contact(Visitor& v, ContactParameters& p) {
   v.number("normal_damping_N_s_m", p.normal_damping, Range::non_negative);
   v.number("shear_damping_N_s_m", p.shear_damping, Range::non_negative);
   v.number("friction", p.friction, Range::non_negative);
+  v.option("rolling_friction", p.rolling_friction);
 }
 
 template <class Visitor>
@@ -147,7 +148,10 @@ void root(Visitor& v, Case& c) {
     v.number("tip_m", bar.tip, Range::non_negative, 0.0);
   });
   v.group("contact", [&] {
-    v.group("particle_particle", [&] { contact(v, c.particle_particle); });
+    v.group("particle_particle", [&] {
+      contact(v, c.particle_particle);
+      v.option("tensile_strength_N", c.particle_particle.tensile_strength);
+    });
     v.group("particle_wall", [&] { contact(v, c.particle_wall); });
   });
   v.group("time", [&] {

@@ -16,6 +16,10 @@ class Writer {
   explicit Writer(nlohmann::json& root) : object_(&root) { root = nlohmann::json::object(); }
 
   void number(const char* key, double value, Range, double = 0.0) { (*object_)[key] = value; }
+  /// Left out where it is off: a case of the paper's law stays the case it is, by whatever options there are.
+  void option(const char* key, double value) {
+    if (value != 0.0) (*object_)[key] = value;
+  }
   void numbers(const char* key, const std::vector<double>& values, Range,
                const std::optional<std::vector<double>>& = std::nullopt) {
     (*object_)[key] = values;

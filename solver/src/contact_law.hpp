@@ -11,24 +11,27 @@ namespace crossdem {
 struct RelativeDisplacement {
   double normal = 0.0;   // [m], Eq. (1), > 0: approaching
   double shear = 0.0;    // [m], Eq. (2), > 0: the surface of i moves along t = (-sin a, cos a)
-  double overlap = 0.0;  // [m], >= 0
+  double overlap = 0.0;  // [m], < 0 in a joint that is stretched
   // What the dashpots see [m]: as above, or relative velocity times dt where the case reads it so.
   double damped_normal = 0.0;
   double damped_shear = 0.0;
+  double rolling = 0.0;  // [m], R (phi_i - phi_j), with R = r_i r_j / (r_i + r_j), at a surface r_i
 };
 
 /// The force on i is -normal n - shear t, its moment -r_i shear (Eqs. (10)-(12)); j receives the opposite force and,
-/// in its own frame, the moment -r_j shear.
+/// in its own frame, the moment -r_j shear. Rolling adds the moment -R rolling on i, and the opposite on j.
 struct ContactForce {
-  double normal = 0.0;  // f_n [N], > 0: repulsion
-  double shear = 0.0;   // f_s [N]
+  double normal = 0.0;   // f_n [N], > 0: repulsion
+  double shear = 0.0;    // f_s [N]
+  double rolling = 0.0;  // f_r [N]
 };
 
-/// The memory of one contact: the spring forces of Eqs. (5), (7).
+/// The memory of one contact: the spring forces of Eqs. (5), (7), and that of rolling.
 struct ContactSpring {
   double normal = 0.0;    // e_n [N]
   double shear = 0.0;     // e_s [N]
   bool touching = false;  // false: the next overlap is a first contact, Eqs. (3), (4)
+  double rolling = 0.0;   // e_r [N]
 };
 
 template <class Law>

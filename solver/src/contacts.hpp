@@ -51,7 +51,9 @@ class Contacts {
   using Pair = PairContact<PairMemory>;
   using OnSurface = SurfaceContact<SurfaceMemory>;
 
-  Contacts(MemoryOwner owner, const ListSkin& skin) : owner_(owner), skin_(skin) {}
+  /// `joint_stretch` [m]: the gap over which two particles may still hold together.
+  Contacts(MemoryOwner owner, const ListSkin& skin, double joint_stretch = 0.0)
+      : owner_(owner), skin_(skin), joint_stretch_(joint_stretch) {}
 
   /// True when something has moved so far that the list could miss a contact.
   [[nodiscard]] bool outdated(const Particles& particles, const Surfaces& surfaces) const {
@@ -88,7 +90,7 @@ class Contacts {
       const std::size_t expected = pairs_.size() + pairs_.size() / 8;
       pairs.reserve(begin == 0 ? expected : expected / crew.size());  // the first takes in the others
       for (std::size_t n = begin; n < end; ++n)
-        if (closer_than(skin_.now(), particles, candidates_[n]))
+        if (closer_than(skin_.now() + joint_stretch_, particles, candidates_[n]))
           pairs.push_back({candidates_[n].i, candidates_[n].j, {}});
       keep_memories(pairs_, pairs);
       return pairs;
@@ -115,7 +117,7 @@ class Contacts {
   void search(const Particles& particles, const Surfaces& surfaces, Crew& crew) {
     width_ = skin_.now() + skin_.reserve();
     candidates_ = {};  // before there are others
-    candidates_ = close_pairs(particles, width_, crew);
+    candidates_ = close_pairs(particles, width_ + joint_stretch_, crew);
     if (owner_ == MemoryOwner::particle) {
       const std::size_t half = candidates_.size();
       for (std::size_t k = 0; k < half; ++k) candidates_.push_back({candidates_[k].j, candidates_[k].i});
@@ -147,12 +149,13 @@ class Contacts {
 
   MemoryOwner owner_;
   ListSkin skin_;
+  double joint_stretch_;                  // [m]
   std::vector<Pair> pairs_;               // sorted by i, then j
   std::vector<OnSurface> on_surfaces_;    // sorted by i, then surface
   std::vector<Vector2> listed_at_;        // positions when the list was made
   double bar_listed_at_ = 0.0;            // [m], the bar's travel then
   long listed_steps_ = 0;                 // of the world, then
-  double width_ = 0.0;                    // [m], of the gaps among the candidates
+  double width_ = 0.0;                    // [m], of the gaps among the candidates, beyond the stretch of joints
   std::vector<ParticlePair> candidates_;  // sorted as the pairs: all that come near while particles have not strayed
   std::vector<OnSurface> surface_candidates_;  // sorted as those in the list; their memories mean nothing
   std::vector<Vector2> searched_at_;           // positions when the candidates were found

@@ -145,6 +145,25 @@ void series_faults(const Case& c, const Fault& fault) {
   check("shear_damping_N_s_m", pair.shear_damping, wall.shear_damping);
 }
 
+void option_faults(const Case& c, const Fault& fault) {
+  const auto refuse = [&](const char* key, double value, const std::string& what) {
+    if (value > 0.0)
+      fault(key,
+            "the scheme \"" + c.scheme.name + "\" has no " + what + ": leave it at 0, or take the scheme \"paper\"");
+  };
+  const double strength = c.particle_particle.tensile_strength;
+  if (c.scheme.name != "paper")
+    refuse("contact.particle_particle.tensile_strength_N", strength, "joints that carry tension");
+  if (c.scheme.name.starts_with("yade")) {
+    refuse("contact.particle_particle.rolling_friction", c.particle_particle.rolling_friction, "rolling springs");
+    refuse("contact.particle_wall.rolling_friction", c.particle_wall.rolling_friction, "rolling springs");
+  }
+  if (strength > 0.0 && c.scheme.readings.lost_contact != LostContact::forget)
+    fault("scheme.lost_contact",
+          "a joint that is broken is forgotten: with contact.particle_particle.tensile_strength_N "
+          "take \"forget\"");
+}
+
 void scheme_faults(const SchemeChoice& scheme, const Fault& fault) {
   Readings others = scheme.readings;
   if (scheme.name.starts_with("liggghts")) others.attraction = {};  // LIGGGHTS knows both
@@ -177,6 +196,7 @@ std::vector<std::string> contradictions(const Case& c) {
     placed_faults(c, fault);
   time_faults(c, fault);
   scheme_faults(c.scheme, fault);
+  option_faults(c, fault);
   if (c.scheme.name.starts_with("yade")) series_faults(c, fault);
   return faults;
 }

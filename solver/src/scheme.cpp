@@ -9,19 +9,39 @@
 
 namespace crossdem {
 
+namespace {
+
+bool resists_rolling(const Case& setup) {
+  return setup.particle_particle.rolling_friction > 0.0 || setup.particle_wall.rolling_friction > 0.0;
+}
+
+/// Whether the contacts are the paper's; batches know no others.
+bool has_plain_contacts(const Case& setup) {
+  return setup.particle_particle.tensile_strength == 0.0 && !resists_rolling(setup);
+}
+
+/// Of the discs that LIGGGHTS moves by `Motion`.
+template <class Motion>
+std::unique_ptr<Stepper> liggghts(const Case& setup, World& world) {
+  if (has_plain_contacts(setup)) return std::make_unique<BatchedStepper<LiggghtsBatches<Motion>>>(setup, world);
+  return std::make_unique<ConventionalStepper<LiggghtsScheme<Motion>>>(setup, world);
+}
+
+}  // namespace
+
 std::unique_ptr<Stepper> make_stepper(const Case& setup, World& world) {
   const SchemeChoice& choice = setup.scheme;
   if (choice.name == "paper") {
     Readings only_start_differs = choice.readings;  // these two concern the start, not the step
     only_start_differs.initial_displacement = {};
     only_start_differs.inertia = {};
-    if (only_start_differs == Readings{}) return std::make_unique<BatchedStepper<PaperBatches>>(setup, world);
+    if (only_start_differs == Readings{} && has_plain_contacts(setup))
+      return std::make_unique<BatchedStepper<PaperBatches>>(setup, world);
     return std::make_unique<PaperStepper<MixedScheme>>(MixedScheme{{choice.readings}, {choice.readings.integrator}},
                                                        choice.readings, world);
   }
-  if (choice.name == "liggghts") return std::make_unique<BatchedStepper<LiggghtsBatches<LiggghtsVerlet>>>(setup, world);
-  if (choice.name == "liggghts_averaged")
-    return std::make_unique<BatchedStepper<LiggghtsBatches<LiggghtsSetVelocities>>>(setup, world);
+  if (choice.name == "liggghts") return liggghts<LiggghtsVerlet>(setup, world);
+  if (choice.name == "liggghts_averaged") return liggghts<LiggghtsSetVelocities>(setup, world);
   if (choice.name == "yade") return std::make_unique<BatchedStepper<YadeBatches<YadeLeapFrog>>>(setup, world);
   if (choice.name == "yade_averaged")
     return std::make_unique<BatchedStepper<YadeBatches<YadeMemoryForce>>>(setup, world);

@@ -23,12 +23,17 @@ struct SurfaceForce {
   ContactForce force;
   Vector2 normal = Vector2::Zero();  // from the disc to the surface
   double lever = 0.0;                // of the moment: arm / radius
-  double work = 0.0;                 // [J], f_n du_n + f_s du_s
+  double work = 0.0;                 // [J], f_n du_n + f_s du_s + f_r R dphi
 };
 
 /// Eqs. (2), (12): the moment's arm over the radius; as printed the whole radius.
 inline double moment_lever(TorqueArm reading, double radius, double overlap) {
   return reading == TorqueArm::radius ? 1.0 : 1.0 - 0.5 * overlap / radius;
+}
+
+/// [J], by the displacements of the step.
+inline double work_of(const ContactForce& f, const RelativeDisplacement& u) {
+  return f.normal * u.normal + f.shear * u.shear + f.rolling * u.rolling;
 }
 
 /// The law of a pair, a wall or the bar in the place of j. False where they do not touch. Inlined by force: a disc that
@@ -55,8 +60,9 @@ template <class Law>
     u.damped_normal = velocity.normal;
     u.damped_shear = velocity.shear;
   }
+  u.rolling = disc.radius * disc.rotation;
   f.force = law.force(u, parameters, dt, contact.memory);
-  f.work = f.force.normal * u.normal + f.force.shear * u.shear;
+  f.work = work_of(f.force, u);
   return true;
 }
 
@@ -69,7 +75,11 @@ template <class Scheme>
 class Step {
  public:
   Step(World& world, PaperContacts& contacts, const Scheme& scheme)
-      : w_(world), p_(world.particles), contacts_(contacts), scheme_(scheme) {}
+      : w_(world),
+        p_(world.particles),
+        contacts_(contacts),
+        scheme_(scheme),
+        joint_stretch_(world.particle_particle.joint_stretch()) {}
 
   /// All forces, then all moves.
   void forces_then_moves() {
@@ -77,8 +87,8 @@ class Step {
     for (PaperContacts::Pair& contact : contacts_.pairs()) {
       PairForce f;
       if (!pair_force(contact, f)) continue;
-      add(contact.i, f.force, f.normal, f.lever_i);
-      add(contact.j, f.force, -f.normal, f.lever_j);
+      add(contact.i, f.force, f.normal, f.lever_i, -f.rolling_moment);
+      add(contact.j, f.force, -f.normal, f.lever_j, f.rolling_moment);
     }
     add_in_sums(w_, contacts_.on_surfaces(),
                 [this](PaperContacts::OnSurface& contact, SurfaceTotals& totals) { surface_load(contact, totals); });
@@ -94,7 +104,7 @@ class Step {
     for (std::size_t i = 0; i < p_.count(); ++i) {
       for (; pair != contacts_.pairs().end() && pair->i == i; ++pair) {
         PairForce f;
-        if (pair_force(*pair, f)) add(pair->i, f.force, f.normal, f.lever_i);
+        if (pair_force(*pair, f)) add(pair->i, f.force, f.normal, f.lever_i, -f.rolling_moment);
       }
       for (; on_surface != contacts_.on_surfaces().end() && on_surface->i == i; ++on_surface)
         surface_load(*on_surface, w_.totals);
@@ -109,6 +119,7 @@ class Step {
     Vector2 normal = Vector2::Zero();  // from i to j
     double lever_i = 0.0;              // of the moment: arm / radius
     double lever_j = 0.0;
+    double rolling_moment = 0.0;  // [N m], on j; i receives the opposite
   };
 
   void begin() {
@@ -126,14 +137,16 @@ class Step {
     return moment_lever(scheme_.law.readings.torque_arm, p_.radius[i], overlap);
   }
 
-  /// False where the two do not touch.
+  /// False where the two neither touch nor hold together: a joint is over where its spring would hold its strength,
+  /// whatever Eq. (5) has left in it.
   bool pair_force(PaperContacts::Pair& contact, PairForce& f) {
     const std::uint32_t i = contact.i;
     const std::uint32_t j = contact.j;
     const Vector2 between = p_.position[j] - p_.position[i];
     const double reach = p_.radius[i] + p_.radius[j];
     const double distance_squared = between.squaredNorm();
-    if (distance_squared >= reach * reach) {
+    const double farthest = reach + (contact.memory.touching ? joint_stretch_ : 0.0);
+    if (distance_squared >= farthest * farthest) {
       contact.memory = {};
       return false;
     }
@@ -152,8 +165,11 @@ class Step {
       u.damped_normal = velocity.normal * w_.dt;
       u.damped_shear = velocity.shear * w_.dt;
     }
+    const double rolling_radius = p_.radius[i] * p_.radius[j] / reach;
+    u.rolling = rolling_radius * (p_.rotation[i] - p_.rotation[j]);
     f.force = scheme_.law.force(u, w_.particle_particle, w_.dt, contact.memory);
-    w_.contact_work[i] += f.force.normal * u.normal + f.force.shear * u.shear;
+    f.rolling_moment = rolling_radius * f.force.rolling;
+    w_.contact_work[i] += work_of(f.force, u);
     return true;
   }
 
@@ -164,15 +180,18 @@ class Step {
     SurfaceForce f;
     if (!surface_force(scheme_.law, w_.surfaces, w_.particle_wall, w_.dt, contact, disc, f)) return;
     w_.contact_work[i] += f.work;
-    totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever));
+    totals.add(w_.surfaces, contact.surface, disc.centre,
+               add(i, f.force, f.normal, f.lever, -disc.radius * f.force.rolling));
   }
 
   /// Eqs. (10)-(12): the load of one contact on particle i, whose partner lies in direction `normal`. Returns the
   /// force.
-  Vector2 add(std::uint32_t i, const ContactForce& force, const Vector2& normal, double lever_i) {
+  Vector2 add(std::uint32_t i, const ContactForce& force, const Vector2& normal, double lever_i,
+              double rolling_moment) {
     Vector2 on_i = received(force, normal);
     w_.loads[i].force += on_i;
     w_.loads[i].rim += lever_i * force.shear;
+    w_.loads[i].moment += rolling_moment;
     return on_i;
   }
 
@@ -185,6 +204,7 @@ class Step {
   Particles& p_;
   PaperContacts& contacts_;
   const Scheme& scheme_;
+  double joint_stretch_;  // [m]
 };
 
 }  // namespace crossdem

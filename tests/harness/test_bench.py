@@ -361,6 +361,13 @@ def test_lammps_refuses_what_its_deck_cannot_say(paper):
     )
     clipped, damping = code.unsupported(refused)
     assert "scheme.attraction" in clipped and "contact.particle_wall" in damping
+    contact = paper.resolved["contact"]
+    sticky = contact["particle_particle"] | {"tensile_strength_N": 0.1, "rolling_friction": 0.1}
+    options = code.unsupported(varied_table(paper, contact=contact | {"particle_particle": sticky}))
+    assert [reason.split(":")[0].split(".")[-1] for reason in options] == [
+        "tensile_strength_N",
+        "rolling_friction",
+    ]
 
 
 def test_an_engine_that_tells_no_time_is_named_and_not_counted(fake, tmp_path):

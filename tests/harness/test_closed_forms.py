@@ -177,3 +177,20 @@ def test_each_engine_has_its_law():
     assert engine_law("yade", {"scheme": scheme}).wall_arm(1.0, 0.1) == pytest.approx(0.9)
     with pytest.raises(ValueError):
         engine_law("another", {"scheme": scheme})
+
+
+def test_a_disc_that_resists_rolling_is_slowed_by_less_than_one_that_slides():
+    assert closed_forms.rolling_slowing(0.3, 0.002, 0.002) == pytest.approx(0.2)
+    assert closed_forms.rolling_slowing(0.0, 0.002, 0.002) == 0
+    # By energy: the moment's work mu_r r m g (way / a) is taken from m v^2 / 2 (1 + r^2 / 2 a^2).
+    radius, arm = 0.002, 0.0017
+    slowing = 0.3 * radius / arm / (1 + radius**2 / (2 * arm**2))
+    assert closed_forms.rolling_slowing(0.3, radius, arm) == pytest.approx(slowing, rel=1e-12)
+
+
+def test_a_joint_takes_its_springs_energy():
+    speed = closed_forms.parting_speed_from_joint(0.02, 1000.0, MASS, 0.1)
+    lost_J = MASS / 2 * (0.1**2 - speed**2)
+    assert lost_J == pytest.approx(0.02**2 / 2 / 1000.0, rel=1e-12)
+    assert closed_forms.parting_speed_from_joint(0.0, 1000.0, MASS, 0.1) == pytest.approx(0.1)
+    assert closed_forms.parting_speed_from_joint(1.0, 1000.0, MASS, 0.1) == 0, "it holds"

@@ -21,7 +21,7 @@ from crossdem.compare.answers import answer_faults
 from crossdem.compare.ladder import Ladder, LadderCase
 from crossdem.compare.ladder_report import ladder_junit, print_ladder, write_ladder
 from crossdem.compare.refinement import extrapolated, observed_order
-from crossdem.compare.rungs import AGREES, DIFFERS, NO_RESULT, NOT_COMPARABLE, Rung
+from crossdem.compare.rungs import AGREES, DIFFERS, NO_RESULT, NO_SUCH_LAW, NOT_COMPARABLE, Rung
 
 MICRO = ROOT / "reference_cases" / "micro"
 RESTITUTION = {
@@ -243,6 +243,33 @@ def test_a_difference_weighs_more_than_a_missing_engine_and_that_more_than_an_op
     assert ladder_of().exit_code == ExitCode.INCONCLUSIVE
     sentence = ladder_of(good, bad).sentence
     assert sentence.startswith("few_particles, native, closed form, restitution: 0.5")
+
+
+def test_an_engine_may_lack_the_law_of_a_case_but_not_of_all_it_is_asked_for(case):
+    good = restitution_of(case, EXACT, EXACT, EXACT)
+    held = dataclasses.replace(good, engine="yade")
+    lacking = Rung("a_joint", "yade", rungs.TWIN, "its twin", NO_SUCH_LAW, "not comparable: why")
+    found = ladder_of(good, held, lacking)
+    assert found.exit_code == ExitCode.AGREES
+    assert "every one of 2 rungs" in found.sentence
+    assert found.sentence.endswith(" Not comparable: yade on a_joint.")
+    assert ladder_of(good, lacking).exit_code == ExitCode.INCONCLUSIVE
+    assert "not comparable: why" in ladder_of(good, lacking).sentence
+    assert ladder_of(lacking).exit_code == ExitCode.INCONCLUSIVE
+    bad = restitution_of(case, 0.5, 0.5, 0.5)
+    assert ladder_of(bad, held, lacking).exit_code == ExitCode.DIFFERS
+
+
+def test_what_an_engine_does_not_offer_is_said_once_and_is_no_agreement(folder, tmp_path):
+    case = folder / "rolling_resistance.toml"
+    shutil.copy(MICRO / case.name, case)
+    ended = check(case, tmp_path / "out", "--engines", "native,yade")
+    assert ended.returncode == ExitCode.INCONCLUSIVE, ended.stderr
+    said = "rolling_resistance, yade: not comparable: yade: contact.particle_wall.rolling_friction"
+    assert ended.stdout.count(said) == 1
+    tests = ElementTree.parse(tmp_path / "out" / "junit.xml").findall(".//testcase")
+    skipped = [test for test in tests if test.find("skipped") is not None]
+    assert {test.get("classname") for test in skipped} == {"rolling_resistance.yade"}
 
 
 def test_the_report_is_whole_and_names_every_rung(case, tmp_path):

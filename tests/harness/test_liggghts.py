@@ -71,6 +71,38 @@ def test_attraction_is_allowed_or_clipped_as_the_case_reads_the_paper(packing, t
     assert numbers(clipped, packing, tmp_path / "2")["limit_force"] == "on"
 
 
+def test_only_a_case_that_resists_rolling_has_another_deck(packing, tmp_path):
+    plain, rolling = (
+        inputs(small_case(*changes), packing, tmp_path / name)
+        for name, changes in (
+            ("plain", ()),
+            ("rolling", ("contact.particle_particle.rolling_friction=0.3",)),
+        )
+    )
+    more = {path.name for path in rolling.iterdir()} - {path.name for path in plain.iterdir()}
+    assert more == {"liggghts_rolling.in"}
+    for name in ("liggghts_case.in", "liggghts_bars_1.in"):
+        before, after = (folder.joinpath(name).read_text() for folder in (plain, rolling))
+        assert "epsd2" not in before
+        models = after.count("hooke/stiffness tangential history rolling_friction epsd2 ")
+        assert models == before.count("hooke/stiffness tangential history ") > 0
+    added = set((rolling / "numbers.in").read_text().splitlines())
+    added -= set((plain / "numbers.in").read_text().splitlines())
+    assert added == {
+        "variable rolling_particle string 0.29999999999999999",
+        "variable rolling_wall string 0",
+    }
+
+
+def test_a_joint_that_carries_tension_is_not_comparable():
+    case = small_case("contact.particle_particle.tensile_strength_N=0.1")
+    [reason] = ENGINE.unsupported(case)
+    assert reason.startswith("contact.particle_particle.tensile_strength_N: ")
+    resists_rolling = small_case("contact.particle_wall.rolling_friction=0.1")
+    assert ENGINE.unsupported(resists_rolling) == []
+    assert any("resists rolling" in line for line in ENGINE.limitations(resists_rolling))
+
+
 def test_discs_are_handed_over_to_the_last_digit(case, packing, tmp_path):
     lines = (inputs(case, packing, tmp_path / "run") / "particles.data").read_text().splitlines()
     rows = [

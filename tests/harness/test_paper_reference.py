@@ -15,6 +15,8 @@ SAME_BITS, FORCE_N = 0.0, 1e-14
 # which the chaotic heap makes tenfold about every 20 ms.
 ROUNDED_M, ROUNDED_N = 1e-11, 1e-8
 
+JOINTS = "contact.particle_particle.tensile_strength_N=0.05"
+ROLLING = [f"contact.particle_{partner}.rolling_friction=0.2" for partner in ("particle", "wall")]
 READINGS = {
     "as_printed": [],
     "spring_only": ["first_contact_normal=spring_only"],
@@ -29,6 +31,9 @@ READINGS = {
     "total": ["slip_cap=total"],
     "contact_point": ["torque_arm=contact_point"],
     "sphere": ["inertia=sphere"],
+    "joints": [JOINTS],
+    "rolling": [*ROLLING],
+    "joints_that_roll_capped_by_the_total": [JOINTS, *ROLLING, "scheme.slip_cap=total"],
     # Unstable at the paper's time step:
     "in_turn": ["update_order=in_turn"],
     "true_velocity": ["dashpot_velocity=true_velocity"],
@@ -55,7 +60,10 @@ def heap_case(name, step_s, folder):
         "bar.centre_x_m=0.014",
         f"time.step_s={step_s}",
         "time.penetration_s=0.06",
-        *[f"scheme.{reading}" for reading in READINGS[name]],
+        *[
+            reading if "." in reading.split("=")[0] else f"scheme.{reading}"
+            for reading in READINGS[name]
+        ],
         bar_tip_m=top_of(discs),
     )
 

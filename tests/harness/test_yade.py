@@ -41,6 +41,19 @@ def test_an_undamped_wall_beside_damped_particles_is_beyond_it():
     assert ENGINE.unsupported(small_case()) == []
 
 
+def test_options_beyond_the_paper_are_not_comparable():
+    joints, pairs, walls = ENGINE.unsupported(
+        small_case(
+            "contact.particle_particle.tensile_strength_N=0.1",
+            "contact.particle_particle.rolling_friction=0.1",
+            "contact.particle_wall.rolling_friction=0.1",
+        )
+    )
+    assert joints.startswith("contact.particle_particle.tensile_strength_N: ")
+    assert pairs.startswith("contact.particle_particle.rolling_friction: ")
+    assert walls.startswith("contact.particle_wall.rolling_friction: ")
+
+
 def test_it_says_that_it_clips_attraction_unless_the_case_does(case):
     assert any("clips attraction" in line for line in ENGINE.limitations(case))
     clipped = small_case('scheme.attraction="clipped"')

@@ -92,16 +92,15 @@ FORMULAS = (
         "tension allowed",
         LAW,
         LAWS,
-        "if (spring.normal < 0.0) return lose(spring);",
+        "if (spring.normal < -p.tensile_strength) return lose(spring);",
         "if (spring.normal < -1e300) return lose(spring);",
     ),
     Fault(
         "dashpot kept while sliding",
         LAW,
         LAWS,
-        "f.shear = spring.shear = std::copysign(slip_force, spring.shear);",
-        "spring.shear = std::copysign(slip_force, spring.shear);\n"
-        "      f.shear = spring.shear + p.shear_damping / dt * u.damped_shear;",
+        "if (std::abs(spring) > cap) return spring = std::copysign(cap, spring);",
+        "if (std::abs(spring) > cap) spring = std::copysign(cap, spring);",
     ),
     Fault(
         "whole step at first contact", LAW, LAWS, "u = share_in_contact(u);", "u.overlap *= 1.0;"
@@ -131,8 +130,8 @@ FORMULAS = (
         "no moment on the partner",
         LAW,
         STEP,
-        "add(contact.j, f.force, -f.normal, f.lever_j);",
-        "add(contact.j, f.force, -f.normal, 0.0);",
+        "add(contact.j, f.force, -f.normal, f.lever_j, f.rolling_moment);",
+        "add(contact.j, f.force, -f.normal, 0.0, f.rolling_moment);",
     ),
     Fault(
         "radius of one for both",
@@ -170,8 +169,8 @@ MEMORIES = (
         "spring kept after parting",
         MEMORY,
         STEP,
-        "if (distance_squared >= reach * reach) {\n      contact.memory = {};",
-        "if (distance_squared >= reach * reach) {\n      contact.memory.normal = 0.0;",
+        "if (distance_squared >= farthest * farthest) {\n      contact.memory = {};",
+        "if (distance_squared >= farthest * farthest) {\n      contact.memory.normal = 0.0;",
     ),
 )
 
@@ -239,8 +238,9 @@ RECORDS = (
         "bar force without shear",
         RECORD,
         STEP,
-        "totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever));",
-        "add(i, f.force, f.normal, f.lever);\n"
+        "totals.add(w_.surfaces, contact.surface, disc.centre,\n"
+        "               add(i, f.force, f.normal, f.lever, -disc.radius * f.force.rolling));",
+        "add(i, f.force, f.normal, f.lever, -disc.radius * f.force.rolling);\n"
         "    totals.add(w_.surfaces, contact.surface, disc.centre, -f.force.normal * f.normal);",
     ),
     Fault(

@@ -74,6 +74,19 @@ TEST(CanonicalCase, ADefaultThatIsWrittenOutChangesNothing) {
   EXPECT_NE(canonical_json(small_case({{"gravity_m_s2", 9.8}})), canonical_json(small_case()));
 }
 
+/// Runs and records of the paper's law keep their names, by whatever options there are beyond it.
+TEST(CanonicalCase, OptionsThatAreOffAreNotWritten) {
+  const auto with = [](double strength, double rolling) {
+    return canonical_json(small_case({{"contact",
+                                       {{"particle_particle", {{"tensile_strength_N", strength}}},
+                                        {"particle_wall", {{"rolling_friction", rolling}}}}}}));
+  };
+  EXPECT_EQ(with(0.0, 0.0), canonical_json(small_case()));
+  const json written = json::parse(with(0.1, 0.2));
+  EXPECT_EQ(written["contact"]["particle_particle"]["tensile_strength_N"], 0.1);
+  EXPECT_EQ(written["contact"]["particle_wall"]["rolling_friction"], 0.2);
+}
+
 TEST(CanonicalCase, IsSortedAndWithoutWhiteSpace) {
   const std::string text = canonical_json(small_case());
   EXPECT_EQ(text.find_first_of(" \n\t"), std::string::npos);

@@ -98,6 +98,12 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"/bar/width_m", 0.0, "bar.width_m: must be above 0, is 0.0"},
         Fault{"/bar/width_m", -0.01, "bar.width_m: must be above 0, is -0.01"},
         Fault{"/contact/particle_wall/friction", -0.1, "contact.particle_wall.friction: must not be negative, is -0.1"},
+        Fault{"/contact/particle_wall/rolling_friction", -0.1,
+              "contact.particle_wall.rolling_friction: must not be negative, is -0.1"},
+        Fault{"/contact/particle_particle/tensile_strength_N", "strong",
+              "contact.particle_particle.tensile_strength_N: must be a finite number, is \"strong\""},
+        Fault{"/contact/particle_wall/tensile_strength_N", 0.1,
+              "contact.particle_wall.tensile_strength_N: unknown key; known here: friction, "},
         Fault{"/particles/number_shares", {1.5, 0.5}, "particles.number_shares[0]: must be from 0 to 1, is 1.5"},
         Fault{"/particles/count", 0, "particles.count: must be a whole number from 1 to 10000000, is 0"},
         Fault{"/particles/count", -5, "particles.count: must be a whole number"},
@@ -144,6 +150,38 @@ TEST(Case, AllFaultsAreReportedInOneGo) {
 
 TEST(Case, AnUnknownKeyDoesNotHideAContradiction) {
   EXPECT_EQ(faults_of(small_json({{"bar", {{"colour", 1}, {"width_m", 0.1}}}}).dump()).size(), 2U);
+}
+
+TEST(Case, OptionsBeyondThePaperAreRefusedByTheSchemesThatLackThem) {
+  const auto faults_with = [](const char* scheme) {
+    return faults_of(small_json({{"scheme", {{"name", scheme}}},
+                                 {"contact",
+                                  {{"particle_particle", {{"tensile_strength_N", 0.1}, {"rolling_friction", 0.2}}},
+                                   {"particle_wall", {{"rolling_friction", 0.3}}}}}})
+                         .dump());
+  };
+  EXPECT_TRUE(faults_with("paper").empty());
+  for (const char* scheme : {"liggghts", "liggghts_averaged"}) {
+    const std::vector<std::string> faults = faults_with(scheme);
+    ASSERT_EQ(faults.size(), 1U) << scheme << testing::PrintToString(faults);
+    EXPECT_EQ(faults[0].rfind("contact.particle_particle.tensile_strength_N: the scheme \"liggghts", 0), 0U)
+        << faults[0];
+  }
+  for (const char* scheme : {"yade", "yade_averaged"}) {
+    const std::vector<std::string> faults = faults_with(scheme);
+    ASSERT_EQ(faults.size(), 3U) << scheme << testing::PrintToString(faults);
+    EXPECT_EQ(faults[1].rfind("contact.particle_particle.rolling_friction: the scheme \"yade", 0), 0U) << faults[1];
+    EXPECT_EQ(faults[2].rfind("contact.particle_wall.rolling_friction: the scheme \"yade", 0), 0U) << faults[2];
+  }
+}
+
+TEST(Case, ABrokenJointIsForgottenByNoOtherReading) {
+  const std::vector<std::string> faults =
+      faults_of(small_json({{"scheme", {{"lost_contact", "keep_zero"}}},
+                            {"contact", {{"particle_particle", {{"tensile_strength_N", 0.1}}}}}})
+                    .dump());
+  ASSERT_EQ(faults.size(), 1U) << testing::PrintToString(faults);
+  EXPECT_EQ(faults[0].rfind("scheme.lost_contact: a joint that is broken is forgotten", 0), 0U) << faults[0];
 }
 
 TEST(Case, SeveralContradictionsAreReportedInOneGo) {

@@ -11,13 +11,18 @@
 
 namespace crossdem {
 
-/// Table 2 of the paper; one set for particle-particle and one for particle-wall contacts.
+/// Table 2 of the paper, and two options beyond it; one set for particle-particle and one for particle-wall contacts.
 struct ContactParameters {
   double normal_stiffness = 0.0;  // k_n [N/m]
   double shear_stiffness = 0.0;   // k_s [N/m]
   double normal_damping = 0.0;    // eta_n [N s/m]
   double shear_damping = 0.0;     // eta_s [N s/m]
   double friction = 0.0;          // mu [-]
+  double tensile_strength = 0.0;  // T [N], of the joint of two particles; 0: none, as in the paper
+  double rolling_friction = 0.0;  // mu_r [-]; 0: no resistance to rolling, as in the paper
+
+  /// [m] Over which a joint stretches before it breaks.
+  [[nodiscard]] double joint_stretch() const { return tensile_strength / normal_stiffness; }
 };
 
 /// Left wall at x = 0, right wall at x = width, floor at y = 0, no lid.

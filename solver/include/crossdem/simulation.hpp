@@ -39,12 +39,12 @@ struct MomentumLedger {
 /// Where energy is and went since the start [J]. With the reading "in turn" each contact counts twice.
 struct EnergyLedger {
   double kinetic = 0.0;           // now
-  double spring = 0.0;            // now, e_n^2 / 2 k_n + e_s^2 / 2 k_s
+  double spring = 0.0;            // now, e_n^2 / 2 k_n + (e_s^2 + e_r^2) / 2 k_s
   double potential_change = 0.0;  // of sum m g y
   double kinetic_change = 0.0;
   double spring_change = 0.0;
   double bar_work = 0.0;      // done by the bar on the particles
-  double contact_work = 0.0;  // sum of f_n du_n + f_s du_s: what contacts took up
+  double contact_work = 0.0;  // sum of f_n du_n + f_s du_s + f_r R dphi: what contacts took up
 
   /// Lost in dashpots, sliding and emptied springs.
   [[nodiscard]] double dissipated() const { return contact_work - spring_change; }

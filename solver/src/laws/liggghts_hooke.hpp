@@ -1,7 +1,8 @@
 #pragma once
 // The law of LIGGGHTS-PUBLIC 3.8, "hooke/stiffness tangential history absolute_damping on tangential_damping on",
-// operation by operation: src/surface_model_default.h, normal_model_hooke_stiffness.h, tangential_model_history.h. In
-// the plane, so that its products with zero are left out.
+// operation by operation: src/surface_model_default.h, normal_model_hooke_stiffness.h, tangential_model_history.h; and
+// its option "rolling_friction epsd2", src/rolling_model_epsd2.h. In the plane, so that products with zero are left
+// out.
 
 #include <cmath>
 
@@ -22,6 +23,13 @@ struct HookeApproach {
 struct HookeReaction {
   Vector2 force = Vector2::Zero();  // [N], on i; its partner receives the opposite
   double couple = 0.0;              // [N]: the moment is -arm x couple, for both
+  double push = 0.0;                // [N], normal to the contact
+};
+
+/// The memory of one contact.
+struct HookeSprings {
+  Vector2 shear = Vector2::Zero();  // [m], displacement of the shear spring
+  double rolling = 0.0;             // [N m], moment of the rolling spring
 };
 
 /// `shear` [m] is the contact's memory, which is carried on only where `advance` says so; `limit_force`: no attraction.
@@ -49,13 +57,34 @@ inline HookeReaction liggghts_hooke(const HookeApproach& a, const ContactParamet
   } else {
     drag -= k.shear_damping * sliding;
   }
-  return {push * normal + drag, normal.x() * drag.y() - normal.y() * drag.x()};
+  return {push * normal + drag, normal.x() * drag.y() - normal.y() * drag.x(), push};
 }
 
+/// What two discs resist rolling by, or a disc and a wall: a spring of the stiffness k_s R^2, capped, without dashpot.
+struct RollingSpring {
+  double radius = 0.0;   // R [m]: r_i r_j / (r_i + r_j), at a wall r_i
+  double turning = 0.0;  // [rad/s], spin of i relative to its partner's
+
+  [[nodiscard]] double stiffness(const ContactParameters& k) const { return k.shear_stiffness * radius * radius; }
+
+  /// [N m], taken from i and given to its partner; `push` [N] is the contact's. `memory` [N m] as for the shear.
+  double moment(const ContactParameters& k, double dt, double push, bool advance, double& memory) const {
+    if (k.rolling_friction == 0.0) return 0.0;
+    double moment = memory + turning * (dt * stiffness(k));
+    const double cap = std::abs(push) * radius * k.rolling_friction;
+    if (std::abs(moment) > cap) moment *= cap / std::abs(moment);
+    if (advance) memory = moment;
+    return moment;
+  }
+};
+
 /// [J] in the springs of two that overlap by so much [m], if they do.
-inline double hooke_spring_energy(const ContactParameters& k, double overlap, const Vector2& shear) {
+inline double hooke_spring_energy(const ContactParameters& k, double overlap, double rolling_radius,
+                                  const HookeSprings& springs) {
   if (overlap <= 0.0) return 0.0;
-  return 0.5 * k.normal_stiffness * overlap * overlap + 0.5 * k.shear_stiffness * shear.squaredNorm();
+  const double rolling = RollingSpring{.radius = rolling_radius}.stiffness(k);
+  return 0.5 * k.normal_stiffness * overlap * overlap + 0.5 * k.shear_stiffness * springs.shear.squaredNorm() +
+         (rolling > 0.0 ? 0.5 * springs.rolling * springs.rolling / rolling : 0.0);
 }
 
 }  // namespace crossdem

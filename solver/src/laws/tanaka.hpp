@@ -1,5 +1,6 @@
 #pragma once
-// The contact law of Tanaka et al. (2000), Eqs. (3)-(9).
+// The contact law of Tanaka et al. (2000), Eqs. (3)-(9), and what the paper names as missing: a joint that carries
+// tension up to a strength T, and a resistance to rolling. Both are absent where their parameters are 0.
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,7 @@ template <class Choice>
 struct TanakaLaw {
   Choice readings;
 
-  /// The force of a contact that overlaps; `spring` is its memory and is brought up to date.
+  /// The force of a contact that overlaps, or of a joint; `spring` is its memory and is brought up to date.
   ContactForce force(RelativeDisplacement u, const ContactParameters& p, double dt, ContactSpring& spring) const {
     if (!spring.touching) {
       u = share_in_contact(u);
@@ -39,23 +40,29 @@ struct TanakaLaw {
     } else {
       spring.normal = p.normal_stiffness * u.overlap;
     }
-    if (spring.normal < 0.0) return lose(spring);  // Eq. (8)
+    if (spring.normal < -p.tensile_strength) return lose(spring);  // Eq. (8), where T = 0
 
     ContactForce f;
     f.normal = spring.normal + p.normal_damping / dt * u.damped_normal;  // Eq. (6)
-    if (readings.attraction == Attraction::clipped) f.normal = std::max(f.normal, 0.0);
+    if (readings.attraction == Attraction::clipped) f.normal = std::max(f.normal, -p.tensile_strength);
 
-    spring.shear += p.shear_stiffness * u.shear;
-    const double slip_force = p.friction * (readings.slip_cap == SlipCap::spring ? spring.normal : std::abs(f.normal));
-    if (std::abs(spring.shear) > slip_force) {
-      f.shear = spring.shear = std::copysign(slip_force, spring.shear);  // Eq. (9)
-    } else {
-      f.shear = spring.shear + p.shear_damping / dt * u.damped_shear;  // Eq. (7)
-    }
+    const double pressed = readings.slip_cap == SlipCap::spring ? spring.normal + p.tensile_strength
+                                                                : std::abs(f.normal + p.tensile_strength);
+    f.shear =
+        capped(spring.shear, p.shear_stiffness * u.shear, p.friction * pressed, p.shear_damping / dt * u.damped_shear);
+    if (p.rolling_friction > 0.0)
+      f.rolling = capped(spring.rolling, p.shear_stiffness * u.rolling, p.rolling_friction * pressed, 0.0);
     return f;
   }
 
  private:
+  /// Eqs. (7), (9): a spring that grows by `more` up to the `cap`, where it slips and its `dashpot` is off.
+  static double capped(double& spring, double more, double cap, double dashpot) {
+    spring += more;
+    if (std::abs(spring) > cap) return spring = std::copysign(cap, spring);
+    return spring + dashpot;
+  }
+
   /// Eqs. (3), (4): at first contact only the share of the step spent in contact counts.
   [[nodiscard]] RelativeDisplacement share_in_contact(RelativeDisplacement u) const {
     double share = 1.0;
@@ -73,14 +80,15 @@ struct TanakaLaw {
     return u;
   }
 
-  /// Eq. (8): no tension in the spring; what is left of the contact's memory is a reading.
+  /// Eq. (8): no tension in the spring, or none beyond its joint's strength; what is left of the contact's memory is a
+  /// reading.
   ContactForce lose(ContactSpring& spring) const {
     if (readings.lost_contact == LostContact::forget) {
       spring = {};
     } else if (readings.lost_contact == LostContact::keep_zero) {
       spring = {.touching = true};
     } else {
-      spring.shear = 0.0;
+      spring.shear = spring.rolling = 0.0;
     }
     return {};
   }

@@ -17,13 +17,10 @@ namespace crossdem {
 template <class Motion>
 class LiggghtsScheme {
  public:
-  struct PairMemory {
-    Vector2 shear = Vector2::Zero();  // [m], displacement of the shear spring
-  };
+  using PairMemory = HookeSprings;
   struct SurfaceMemory {
-    std::array<Vector2, MeshBar::size> shear{Vector2::Zero(), Vector2::Zero(), Vector2::Zero(),
-                                             Vector2::Zero(), Vector2::Zero(), Vector2::Zero()};  // [m], by triangle
-    std::array<bool, MeshBar::size> held{};  // whether the triangle has a contact, touching or close
+    std::array<HookeSprings, MeshBar::size> springs;  // by triangle
+    std::array<bool, MeshBar::size> held{};           // whether the triangle has a contact, touching or close
   };
   static constexpr bool first_evaluation_advances = false;
   static constexpr double share_before = Motion::first_share;
@@ -129,12 +126,14 @@ class LiggghtsScheme {
                                             .velocity = p.velocity[i] - p.velocity[j],
                                             .turning = turning},
                                            w.particle_particle, w.dt, limit_force_, advance, contact.memory.shear);
+    const RollingSpring rolling{rolling_radius(p, i, j), p.spin[i] - p.spin[j]};
+    const double resistance = rolling.moment(w.particle_particle, w.dt, f.push, advance, contact.memory.rolling);
     w.loads[i].force += f.force;
-    w.loads[i].moment += -arm_i * f.couple;
+    w.loads[i].moment += -arm_i * f.couple - resistance;
     w.loads[j].force += -f.force;
-    w.loads[j].moment += -arm_j * f.couple;
-    w.contact_work[i] -=
-        w.dt * (f.force.dot(p.velocity[i] - p.velocity[j]) - f.couple * (arm_i * p.spin[i] + arm_j * p.spin[j]));
+    w.loads[j].moment += -arm_j * f.couple + resistance;
+    w.contact_work[i] -= w.dt * (f.force.dot(p.velocity[i] - p.velocity[j]) -
+                                 f.couple * (arm_i * p.spin[i] + arm_j * p.spin[j]) - resistance * rolling.turning);
   }
 
   /// Gravity is the first of the fixes.
@@ -154,15 +153,15 @@ class LiggghtsScheme {
 
   void surface(const World& w, const Surfaces& surfaces, const OwnBar& bar, SurfaceContact<SurfaceMemory>& contact,
                const DiscInMotion& disc, SurfaceAction action, bool advance) const {
-    const auto touch = [&](const Vector2& delta, double overlap, double wall_velocity, Vector2& shear) {
-      touch_surface(w, surfaces, contact.surface, disc, delta, overlap, {0.0, wall_velocity}, shear, advance, action);
+    const auto touch = [&](const Vector2& delta, double overlap, double wall_velocity, HookeSprings& springs) {
+      touch_surface(w, surfaces, contact.surface, disc, delta, overlap, {0.0, wall_velocity}, springs, advance, action);
     };
     if (contact.surface == Surface::bar) return bar_contacts(bar, contact.memory, disc, touch);
     const auto [delta, gap] = at_wall(surfaces, contact.surface, disc.centre, disc.radius);
     if (gap > 0.0)
       contact.memory = {};
     else
-      touch(delta, -gap, 0.0, contact.memory.shear[0]);
+      touch(delta, -gap, 0.0, contact.memory.springs[0]);
   }
 
   /// [J]
@@ -170,7 +169,7 @@ class LiggghtsScheme {
     const Particles& p = w.particles;
     const double distance = (p.position[contact.i] - p.position[contact.j]).norm();
     const double overlap = p.radius[contact.i] + p.radius[contact.j] - distance;
-    return hooke_spring_energy(w.particle_particle, overlap, contact.memory.shear);
+    return hooke_spring_energy(w.particle_particle, overlap, rolling_radius(p, contact.i, contact.j), contact.memory);
   }
 
   [[nodiscard]] static double spring_energy(const World& w, const OwnBar& bar,
@@ -179,13 +178,13 @@ class LiggghtsScheme {
     const double radius = w.particles.radius[contact.i];
     if (contact.surface != Surface::bar) {
       const double overlap = -at_wall(w.surfaces, contact.surface, centre, radius).gap;
-      return hooke_spring_energy(w.particle_wall, overlap, contact.memory.shear[0]);
+      return hooke_spring_energy(w.particle_wall, overlap, radius, contact.memory.springs[0]);
     }
     double energy = 0.0;
     for (std::size_t k = 0; k < MeshBar::size; ++k) {
       if (!contact.memory.held[k]) continue;
       const std::optional<MeshContact> at = bar.mesh().triangles()[k].contact(centre);
-      if (at) energy += hooke_spring_energy(w.particle_wall, radius - at->distance, contact.memory.shear[k]);
+      if (at) energy += hooke_spring_energy(w.particle_wall, radius - at->distance, radius, contact.memory.springs[k]);
     }
     return energy;
   }
@@ -205,7 +204,11 @@ class LiggghtsScheme {
     return {{side ? -towards : 0.0, side ? 0.0 : -towards}, gap};
   }
 
-  /// Each triangle has its contact with its own shear spring. A disc that comes to lie over the other triangle of a
+  static double rolling_radius(const Particles& p, std::uint32_t i, std::uint32_t j) {
+    return p.radius[i] * p.radius[j] / (p.radius[i] + p.radius[j]);
+  }
+
+  /// Each triangle has its contact with its own springs. A disc that comes to lie over the other triangle of a
   /// face takes it along, src/fix_contact_history_mesh_I.h; the first triangle of a face may then act beside the second
   /// for a step, where the disc is so near to the line between them that it counts to both.
   template <class Touch>
@@ -219,25 +222,25 @@ class LiggghtsScheme {
       const std::size_t other = MeshBar::other(k);
       if (!memory.held[k]) {
         if (at->on_face && kept[other]) continue;
-        memory.shear[k] = at->on_face && memory.held[other] ? memory.shear[other] : Vector2(Vector2::Zero());
+        memory.springs[k] = at->on_face && memory.held[other] ? memory.springs[other] : HookeSprings{};
       }
       kept[k] = true;
       if (gap > 0.0) {
-        memory.shear[k].setZero();
+        memory.springs[k] = {};
         continue;
       }
       double velocity = 0.0;  // of the wall, weighed as LIGGGHTS does: the weights need not sum to one
       if (bar.velocity() != 0.0)
         velocity = at->barycentric[0] * bar.velocity() + at->barycentric[1] * bar.velocity() +
                    at->barycentric[2] * bar.velocity();
-      touch(-at->delta, -gap, velocity, memory.shear[k]);
+      touch(-at->delta, -gap, velocity, memory.springs[k]);
     }
     memory.held = kept;
   }
 
   void touch_surface(const World& w, const Surfaces& surfaces, Surface surface, const DiscInMotion& disc,
-                     const Vector2& delta, double overlap, const Vector2& wall_velocity, Vector2& shear, bool advance,
-                     SurfaceAction action) const {
+                     const Vector2& delta, double overlap, const Vector2& wall_velocity, HookeSprings& springs,
+                     bool advance, SurfaceAction action) const {
     const double distance = disc.radius - overlap;
     const double inverse = 1.0 / distance;
     const double arm = disc.radius - 0.5 * overlap;
@@ -247,11 +250,13 @@ class LiggghtsScheme {
                                             .overlap = disc.radius - distance,
                                             .velocity = velocity,
                                             .turning = arm * disc.spin * inverse},
-                                           w.particle_wall, w.dt, limit_force_, advance, shear);
+                                           w.particle_wall, w.dt, limit_force_, advance, springs.shear);
+    const RollingSpring rolling{disc.radius, arm * disc.spin * inverse};  // at a wall LIGGGHTS rolls by this rate
+    const double resistance = rolling.moment(w.particle_wall, w.dt, f.push, advance, springs.rolling);
     action.load.force += f.force;
-    action.load.moment += -arm * f.couple;
+    action.load.moment += -arm * f.couple - resistance;
     action.totals.add(surfaces, surface, disc.centre, f.force);
-    action.work -= w.dt * (f.force.dot(velocity) - f.couple * arm * disc.spin);
+    action.work -= w.dt * (f.force.dot(velocity) - f.couple * arm * disc.spin - resistance * disc.spin);
   }
 
   static void half_kick(World& w) {

@@ -44,7 +44,7 @@ class LiggghtsBatches : public ConventionalBatches<LiggghtsScheme<Motion>, Liggg
   }
 
   static std::array<double, 2> numbers(const Memory& memory) { return {memory.shear.x(), memory.shear.y()}; }
-  static Memory memory(const std::array<double, 2>& numbers) { return {{numbers[0], numbers[1]}}; }
+  static Memory memory(const std::array<double, 2>& numbers) { return {.shear = {numbers[0], numbers[1]}}; }
 
   void add_pair_forces(const World& w, std::span<Pairs> pairs, const batch::Disc* discs, batch::Load* loads) const {
     batch::add_liggghts_forces(pairs, discs, loads, w.particle_particle, w.dt, Base::scheme().limit_force());

@@ -26,7 +26,8 @@ class PaperStepper final : public Stepper {
   PaperStepper(const Scheme& scheme, const Readings& readings, World& world)
       : scheme_(scheme),
         in_turn_(readings.update_order == UpdateOrder::in_turn),
-        contacts_(in_turn_ ? MemoryOwner::particle : MemoryOwner::pair, ListSkin(world.particles)) {
+        contacts_(in_turn_ ? MemoryOwner::particle : MemoryOwner::pair, ListSkin(world.particles),
+                  world.particle_particle.joint_stretch()) {
     Particles& p = world.particles;
     if (readings.inertia == Inertia::sphere)
       for (std::size_t i = 0; i < p.count(); ++i) p.inertia[i] = 0.4 * p.mass[i] * p.radius[i] * p.radius[i];
@@ -51,12 +52,13 @@ class PaperStepper final : public Stepper {
 
   [[nodiscard]] PaperContacts& contacts() { return contacts_; }
 
-  /// e_n^2 / 2 k_n + e_s^2 / 2 k_s.
+  /// e_n^2 / 2 k_n + (e_s^2 + e_r^2) / 2 k_s.
   [[nodiscard]] double spring_energy(const World& world) const override {
     double energy = 0.0;
     const auto add = [&](const ContactSpring& spring, const ContactParameters& parameters) {
       energy += spring.normal * spring.normal / (2 * parameters.normal_stiffness);
-      if (parameters.shear_stiffness > 0.0) energy += spring.shear * spring.shear / (2 * parameters.shear_stiffness);
+      const double shear_squared = spring.shear * spring.shear + spring.rolling * spring.rolling;
+      if (parameters.shear_stiffness > 0.0) energy += shear_squared / (2 * parameters.shear_stiffness);
     };
     for (const auto& contact : contacts_.pairs()) add(contact.memory, world.particle_particle);
     for (const auto& contact : contacts_.on_surfaces()) add(contact.memory, world.particle_wall);
