@@ -99,6 +99,13 @@ def bar_and_24_that_resist_rolling(folder):
     return few_particles(discs, folder, *CLOSE, *ROLLING, *way, bar_tip_m=top_of(discs))
 
 
+def rocking_across_the_bars_face(folder):
+    """Between floor and bar, from one triangle of the bar's bottom face to the other, its rolling spring wound up."""
+    smooth = ("contact.particle_wall.friction=0.0", "bar.speed_m_s=0.001")
+    disc = Disc(0.0085, 0.0025, velocity_x=0.03, spin=1.0)
+    return few_particles([disc], folder, *CLOSE, *ROLLING, *smooth, bar_tip_m=0.00498)
+
+
 def whole_bed(folder):
     changes = ("time.rest_s=0.0", "time.penetration_s=0.1", "time.frame_interval_s=0.01")
     return load_case(REFERENCE_CASE, changes)
@@ -117,9 +124,14 @@ LIMITS_M = {
     bar_and_24: {},
     five_that_resist_rolling: {},
     bar_and_24_that_resist_rolling: {},
+    rocking_across_the_bars_face: {},
     whole_bed: {"yade": 1e-12, "yade-averaged": 1e-12},
 }
-RESIST_ROLLING = (five_that_resist_rolling, bar_and_24_that_resist_rolling)
+RESIST_ROLLING = (
+    five_that_resist_rolling,
+    bar_and_24_that_resist_rolling,
+    rocking_across_the_bars_face,
+)
 
 
 @pytest.fixture(params=list(TWIN_SCHEMES))

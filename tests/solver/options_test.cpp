@@ -65,6 +65,7 @@ double parting_speed(double strength, double speed, double time) {
   Case c = springs_only();
   c.particle_particle.tensile_strength = strength;
   c.time.step = 1e-7;
+  c.container.width = 0.2;
   Particles p = small_disc({0.02, 0.05}, Vector2::Zero());
   p.add(small_radius, small_mass, {0.024 - 1e-12, 0.05}, {speed, 0.0});
   Simulation s(c, p, std::nullopt);
@@ -72,10 +73,11 @@ double parting_speed(double strength, double speed, double time) {
   return s.particles().velocity[1].x() - s.particles().velocity[0].x();
 }
 
-// T^2 / 2 k_n of the energy m v^2 / 4 of the relative motion. The stronger joint stretches by 1 mm: over several lists.
+// T^2 / 2 k_n of the energy m v^2 / 4 of the relative motion. The stronger joint stretches by 3 mm: beyond all that
+// lists of neighbours hold in reserve.
 TEST(Joint, BreaksWhereItHoldsItsStrengthAndKeepsItsEnergy) {
   const double half_period = std::numbers::pi * std::sqrt(small_mass / 2 / 1000.0);
-  for (const double strength : {1e-3, 1.0}) {
+  for (const double strength : {1e-3, 3.0}) {
     const double escape = strength * std::sqrt(2 / (1000.0 * small_mass));
     EXPECT_NEAR(parting_speed(strength, 0.99 * escape, half_period), -0.99 * escape, 1e-3 * escape) << "swings back";
     for (const double factor : {1.01, 1.5, 4.0})
@@ -166,18 +168,19 @@ TEST(Rolling, PartnersReceiveOppositeMoments) {
   }
 }
 
-/// Kinetic energy and springs gain what contacts lose in friction and dashpots: none here.
+// Nothing slips and nothing is damped; what the springs hold is mostly shear and rolling, as the weight keeps the
+// overlap.
 TEST(Rolling, SpringsKeepWhatTheyAreGiven) {
   Case c = springs_only();
+  c.gravity = g;
   c.time.step = 1e-7;
-  c.particle_wall.friction = c.particle_wall.rolling_friction = 1e3;
   for (const char* scheme : {"paper", "liggghts"}) {
-    c.scheme.name = scheme;
-    Simulation s(c, small_disc({0.02, small_radius - 1e-5}, {1e-4, 0.0}, 0.3), std::nullopt);
+    Simulation s = disc_on_floor(c, 1e3, scheme, {1e-5, 0.03});
     s.advance(3000);
     const EnergyLedger e = s.energy_ledger();
-    EXPECT_NEAR(e.kinetic_change + e.spring_change, 0.0, 1e-3 * e.kinetic) << scheme;
-    EXPECT_NEAR(e.contact_work, e.spring_change, 1e-3 * std::abs(e.spring_change)) << scheme;
+    EXPECT_GT(e.spring_change, 0.2 * e.kinetic) << scheme;
+    EXPECT_NEAR(e.kinetic_change + e.spring_change + e.potential_change, 0.0, 5e-3 * e.spring_change) << scheme;
+    EXPECT_NEAR(e.contact_work, e.spring_change, 5e-3 * e.spring_change) << scheme;
   }
 }
 
