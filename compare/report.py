@@ -24,13 +24,23 @@ from . import (
 from .checks import ALARM_LEVEL, SEEDS_FOR_INTERVAL
 from .colours import engine_styles
 from .comparison import Comparison
+from .curve_data import curve_data
 from .junit import junit_xml
-from .pages import render
+from .pages import embedded, render
 from .record import libraries, record
 from .recorded import DATE
+from .viewer import viewer_data
 
 WIDE_PX, NARROW_PX, PANEL_PX = (900, 400), (380, 320), (440, 320)
 FIELD_PX = (400, 460)
+ASSETS = ("uPlot.min.css", "uPlot.iife.min.js", "viewer.js", "curves.js", "filter.js")
+SECTIONS = {
+    "beds": "Motion",
+    "resistance": "Resistance",
+    "checks": "Checks",
+    "horizon": "Particle by particle",
+    "provenance": "Provenance",
+}
 
 
 def write_report(comparison: Comparison, out_dir: Path) -> Path:
@@ -43,7 +53,7 @@ def write_report(comparison: Comparison, out_dir: Path) -> Path:
     write_whole(out_dir / "junit.xml", junit_xml(comparison))
     write_whole(out_dir / "report.md", render("report.md", values).encode())
     values |= _pictures(comparison)
-    write_whole(out_dir / "report.html", render("report.html", values).encode())
+    write_whole(out_dir / "report.html", render("report.html", values, ASSETS).encode())
     return out_dir / "report.html"
 
 
@@ -93,7 +103,11 @@ def _pictures(comparison: Comparison) -> dict:
         f"{comparison.case.resolved['time']['penetration_s'] * stage:.3g} s"
         for stage in beds.STAGES
     ]
+    seen, curves = viewer_data(runs), curve_data(comparison)
     return {
+        "sections": SECTIONS.items(),
+        "viewer": embedded(seen) if seen else None,
+        "curves": embedded(curves) if curves else None,
         "colours": {
             engine: style.colour for engine, style in engine_styles(comparison.engines).items()
         },
