@@ -23,16 +23,16 @@
   };
   const shown = (plot, value) => (value == null ? "–" : String(Number(value.toPrecision(4))).replace("-", "−"));
 
-  function show(holder, { x_label, y_label, x, engines }) {
+  function show(holder, { x_label, y_label, x, engines, spans_gaps: spanGaps }) {
     const axis = { stroke: () => colour("ink"), grid: { stroke: () => colour("line"), width: 1 }, ticks: { stroke: () => colour("line") } };
     const banded = engines.some(({ low }) => low.some((value) => value !== null));
     const series = [{ label: x_label, value: shown }];
     const values = [x];
     const bands = [];
     for (const { engine, colour: own, mean, low, high } of engines) {
-      const edge = { stroke: own, width: 0, points: { show: false }, spanGaps: true, value: shown, class: "edge" };
+      const edge = { stroke: own, width: 0, points: { show: false }, spanGaps, value: shown, class: "edge" };
       bands.push({ series: [series.length + 1, series.length + 2], fill: `${own}33` });
-      series.push({ label: engine, stroke: own, width: 2, spanGaps: true, points: { show: false }, value: shown },
+      series.push({ label: engine, stroke: own, width: 2, spanGaps, points: { show: false }, value: shown },
         { label: `${engine}, high`, ...edge }, { label: `${engine}, low`, ...edge });
       values.push(mean, high, low);
     }

@@ -12,6 +12,7 @@
     made.append(...children);
     return made;
   };
+  const say = (place, text) => { if (place.textContent !== text) place.textContent = text; }; // to lay out no more than changes
   const shown = (value) => String(Number(value.toPrecision(3))).replace("-", "−");
 
   // The inverse of pack() in viewer.py: Float32Array per frame.
@@ -39,13 +40,16 @@
   const [first] = data.runs;
   const last = first.time_s.length - 1;
 
-  // Value of a channel of particle i at a frame that need not be whole.
+  // Values at a frame that need not be whole: of the bar, and of a channel of particle i.
+  const between = (values, frame) => {
+    const before = Math.floor(frame);
+    return values[before] + (frame - before) * ((values[before + 1] ?? values[before]) - values[before]);
+  };
   const at = (run, name, i, frame) => {
     const frames = run.channels[name];
-    const before = Math.min(Math.floor(frame), frames.length - 1);
+    const before = Math.floor(frame);
     const value = frames[before][i];
-    return frame > before && before + 1 < frames.length
-      ? value + (frame - before) * (frames[before + 1][i] - value) : value;
+    return frame > before ? value + (frame - before) * (frames[before + 1][i] - value) : value;
   };
   const apart = (run, i, frame, other, otherFrame) =>
     Math.hypot(at(run, "x", i, frame) - at(other, "x", i, otherFrame), at(run, "y", i, frame) - at(other, "y", i, otherFrame));
@@ -124,64 +128,45 @@
     colours = Object.fromEntries(["ink", "bar", "line", "quiet"].map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
   }
 
-  // Particles by the colour that they get, so that each colour is one path.
-  function groups(run, here) {
+  function colourOf(run, i, here) {
     const colouring = colourings[choice.value];
-    const found = new Map();
-    for (let i = 0; i < run.radius_m.length; i++) {
-      let colour = data.layer_colours[run.layer[i]];
-      if (colouring.value) {
-        const share = colouring.value(run, i, here) / colouring.top;
-        const place = colouring.signed ? (share + 1) / 2 : share;
-        const palette = colouring.signed ? palettes.signed : palettes.growing;
-        colour = Number.isNaN(share) ? colours.line : palette[Math.round(Math.min(Math.max(place, 0), 1) * (SHADES - 1))];
-      }
-      if (!found.has(colour)) found.set(colour, []);
-      found.get(colour).push(i);
-    }
-    return found;
+    if (!colouring.value) return data.layer_colours[run.layer[i]];
+    const share = colouring.value(run, i, here) / colouring.top;
+    if (Number.isNaN(share)) return colours.line;
+    const place = Math.min(Math.max(colouring.signed ? (share + 1) / 2 : share, 0), 1);
+    return palettes[colouring.signed ? "signed" : "growing"][Math.round(place * (SHADES - 1))];
   }
 
   function drawBed({ run, canvas, pen, said }) {
     const here = frameOf(run);
-    const pixels = canvas.width / data.width_m;
-    pen.setTransform(pixels, 0, 0, -pixels, 0, canvas.height); // metres, y upwards
-    pen.clearRect(0, 0, data.width_m, data.height_m);
-    const disc = (i, radius) => {
-      const x = at(run, "x", i, here);
-      const y = at(run, "y", i, here);
-      pen.moveTo(x + radius, y);
-      pen.arc(x, y, radius, 0, 2 * Math.PI);
-    };
-    for (const [colour, particles] of groups(run, here)) {
-      pen.fillStyle = colour;
+    const scale = canvas.width / data.width_m; // pixels per metre
+    const across = (x_m) => scale * x_m;
+    const down = (y_m) => canvas.height - scale * y_m;
+    const circle = (i, share) => {
       pen.beginPath();
-      for (const i of particles) disc(i, 0.93 * run.radius_m[i]); // a little small, to be told apart
-      pen.fill();
+      pen.arc(across(at(run, "x", i, here)), down(at(run, "y", i, here)), share * scale * run.radius_m[i], 0, 2 * Math.PI);
+    };
+    pen.clearRect(0, 0, canvas.width, canvas.height);
+    for (let i = 0; i < run.radius_m.length; i++) {
+      pen.fillStyle = colourOf(run, i, here);
+      circle(i, 0.93); // a little small, to be told apart
+      pen.fill(); // one by one: a path of many circles takes longer
     }
-    const tip = run.bar_tip_m[Math.floor(here)];
-    const next = run.bar_tip_m[Math.min(Math.floor(here) + 1, run.bar_tip_m.length - 1)];
     const { centre_x_m, width_m, length_m } = data.bar;
     pen.fillStyle = colours.bar;
-    pen.fillRect(centre_x_m - width_m / 2, tip + (here % 1) * (next - tip), width_m, length_m);
+    pen.fillRect(across(centre_x_m - width_m / 2), down(between(run.bar_tip_m, here) + length_m), scale * width_m, scale * length_m);
     pen.strokeStyle = colours.ink;
-    pen.lineWidth = 2 / pixels;
+    pen.lineWidth = 2;
+    pen.strokeRect(0, -2, canvas.width, canvas.height + 2);
     if (chosen !== null && chosen < run.radius_m.length) {
-      pen.beginPath();
-      disc(chosen, 1.3 * run.radius_m[chosen]);
+      circle(chosen, 1.3);
       pen.stroke();
     }
-    pen.beginPath();
-    pen.moveTo(0, data.height_m);
-    pen.lineTo(0, 0);
-    pen.lineTo(data.width_m, 0);
-    pen.lineTo(data.width_m, data.height_m);
-    pen.stroke();
-    said.textContent = sayParticle(run, here);
+    say(said, sayParticle(run, here));
   }
 
   function sayParticle(run, here) {
-    if (chosen === null || chosen >= run.radius_m.length) return "";
+    if (chosen === null || chosen >= run.radius_m.length) return run === first ? "Point at a particle for its values in every bed." : "";
     const parts = [`particle ${chosen}`,
       `x ${shown(100 * at(run, "x", chosen, here))}, y ${shown(100 * at(run, "y", chosen, here))} cm`];
     for (const { title, unit, times, value } of Object.values(colourings)) {
@@ -192,8 +177,8 @@
   }
 
   function draw() {
-    clock.textContent = `${first.time_s[Math.round(frame)].toFixed(2)} s`;
-    slider.setAttribute("aria-valuetext", clock.textContent);
+    say(clock, `${first.time_s[Math.round(frame)].toFixed(2)} s`);
+    if (slider.ariaValueText !== clock.textContent) slider.ariaValueText = clock.textContent;
     bedsOf.forEach(drawBed);
   }
 

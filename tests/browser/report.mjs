@@ -4,6 +4,7 @@ import { chromium } from "playwright-core";
 
 const [address, folder] = process.argv.slice(2);
 const WIDTHS_PX = [1280, 400];
+const PLAYS = 3; // of a second or more each, as other programs may take the processor
 const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
 const seen = { complaints: [], requests: [], wider_than_window: [] };
 
@@ -17,6 +18,13 @@ async function open(options) {
   return page;
 }
 
+// Times from picture to picture of the page
+const intervals = (count) => new Promise((resolve) => {
+  const times = [];
+  const tick = (now) => (times.push(now) > count ? resolve(times.slice(1).map((time, k) => time - times[k])) : requestAnimationFrame(tick));
+  requestAnimationFrame(tick);
+});
+
 const picture = (page, index = 0) => page.evaluate((k) => document.querySelectorAll("#viewer canvas")[k].toDataURL(), index);
 
 async function useViewer(page) {
@@ -26,12 +34,8 @@ async function useViewer(page) {
   const start = await picture(page);
 
   await page.click("#viewer-play");
-  // Of the whole page, measured by its own pictures
-  seen.intervals_ms = await page.evaluate(() => new Promise((resolve) => {
-    const times = [];
-    const tick = (now) => (times.push(now) > 150 ? resolve(times.slice(1).map((time, k) => time - times[k])) : requestAnimationFrame(tick));
-    requestAnimationFrame(tick);
-  }));
+  seen.intervals_ms = [];
+  for (let play = 0; play < PLAYS; play++) seen.intervals_ms.push(await page.evaluate(intervals, 60));
   seen.clock_after_playing = await clock();
   await page.click("#viewer-play");
   const paused = await clock();
@@ -68,7 +72,10 @@ async function useViewer(page) {
     await page.selectOption("#viewer-colour", name);
     seen.colourings[name] = [await picture(page, 1), await page.textContent("#viewer .scale")];
   }
-  await page.locator("#viewer canvas").first().hover({ position: { x: 20, y: (await page.locator("#viewer canvas").first().boundingBox()).height - 12 } });
+  await page.locator("#viewer canvas").first().scrollIntoViewIfNeeded();
+  const bed = await page.locator("#viewer canvas").first().boundingBox();
+  await page.mouse.move(bed.x + 0.1 * bed.width, bed.y + 0.95 * bed.height);
+  await page.mouse.move(bed.x + 0.3 * bed.width, bed.y + 0.85 * bed.height, { steps: 20 }); // between particles, too
   seen.said = await page.locator("#viewer .said").allTextContents();
 }
 
