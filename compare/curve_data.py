@@ -24,7 +24,8 @@ def curve_data(comparison: Comparison) -> dict[str, dict]:
         name: {
             "x_label": table.index.name,
             "y_label": y_label,
-            "spans_gaps": name == "resistance",  # where engines have other depths; a surface ends at the bar
+            "spans_gaps": name
+            == "resistance",  # where engines have other depths; a surface ends at the bar
             "x": table.index.to_numpy().tolist(),
             "engines": [
                 {"engine": engine, "colour": style.colour}

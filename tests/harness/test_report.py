@@ -8,12 +8,13 @@ from html.parser import HTMLParser
 from io import StringIO
 from xml.etree import ElementTree
 
+import pandas as pd
 import pytest
 import synthetic
 from rich.console import Console
 
 from crossdem.adapters import files
-from crossdem.compare import quantities, report, summary, verdict, wording
+from crossdem.compare import quantities, report, resistance, summary, verdict, wording
 from crossdem.compare.colours import engine_styles
 from crossdem.compare.comparison import compare_runs
 from crossdem.compare.ensemble import Ensemble
@@ -54,10 +55,53 @@ def written(comparison, folder):
     return page.read_text(encoding="utf-8"), (folder / "report.md").read_text(encoding="utf-8")
 
 
-def test_the_four_files_are_written_and_nothing_else(tmp_path):
+FIGURES = {
+    f"{name}.{ending}"
+    for name in ("resistance", "movement", "surface", "displacement")
+    for ending in ("svg", "png", "csv")
+}
+
+
+def test_the_four_files_and_the_figures_are_written_and_nothing_else(tmp_path):
     assert report.write_report(compared(), tmp_path / "new") == tmp_path / "new" / "report.html"
     names = {path.name for path in (tmp_path / "new").iterdir()}
-    assert names == {"report.html", "report.md", "report.json", "junit.xml"}
+    assert names == {"report.html", "report.md", "report.json", "junit.xml", "figures"}
+    assert {path.name for path in (tmp_path / "new" / "figures").iterdir()} == FIGURES
+
+
+def test_figures_stand_alone_with_their_data_and_go_with_their_report(tmp_path):
+    comparison = compared(engines=("native", "a $b_c$ <d>"))
+    report.write_report(comparison, tmp_path)
+    folder = tmp_path / "figures"
+    for file in folder.glob("*.svg"):
+        assert "a $b_c$ <d>" in "".join(ElementTree.parse(file).getroot().itertext())
+    table = pd.read_csv(folder / "resistance.csv", index_col=0)
+    runs = [resistance.resistance_profile(run.resistance, 0.001) for run in comparison.of("native")]
+    first, second = (run["mean_N"].to_numpy() for run in runs)
+    assert table["native mean"].to_numpy() == pytest.approx((first + second) / 2, rel=1e-5)
+    half = abs(first - second) / 2**0.5
+    assert table["native high"].to_numpy() == pytest.approx((first + second) / 2 + half, rel=1e-5)
+    report.write_report(compare_runs(synthetic.case(), [], {("native", 1): "died"}), tmp_path)
+    assert list(folder.iterdir()) == []
+
+
+def test_the_page_names_the_other_pages_of_the_case_that_are_there(tmp_path):
+    assert "None here yet" in written(compared(), tmp_path)[0]
+    for name in ("horizon/horizon.html", "explain-yade/explain.html"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).touch()
+    links = [v for name, v in Page(written(compared(), tmp_path)[0]).attributes if name == "href"]
+    assert [link for link in links if "#" not in link] == [
+        "explain-yade/explain.html",
+        "horizon/horizon.html",
+    ]
+
+
+def test_every_link_within_the_page_has_its_section(tmp_path):
+    page = Page(written(compared(), tmp_path)[0])
+    ids = {value for name, value in page.attributes if name == "id"}
+    links = {v[1:] for name, v in page.attributes if name == "href" and v.startswith("#")}
+    assert {"beds", "resistance", "checks", "ladder", "provenance"} <= links <= ids
 
 
 def test_the_page_says_the_verdict_first_and_shows_every_part(tmp_path):
