@@ -111,6 +111,8 @@ def _pictures(comparison: Comparison) -> dict:
     seen, curves = viewer_data(runs), curve_data(comparison)
     return {
         "sections": SECTIONS.items(),
+        "absent": ([] if runs else ["beds"])
+        + ([] if comparison.ensemble.manifests else ["resistance"]),
         "viewer": embedded(seen) if seen else None,
         "curves": embedded(curves) if curves else None,
         "colours": {
