@@ -67,7 +67,7 @@
     colourings.difference = { title: `distance to the same particle in ${first.engine}`, unit: "mm", times: 1000,
       value: (run, i, frame) => (run.packing === first.packing ? apart(run, i, frame, first, frame) : NaN) };
 
-  const GROWING = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]]; // viridis
+  const GROWING = [[98, 70, 160], [59, 110, 170], [33, 155, 150], [110, 205, 95], [253, 231, 37]]; // seen on white and on black
   const SIGNED = [[33, 102, 172], [146, 197, 222], [200, 200, 200], [244, 165, 130], [178, 24, 43]];
   const SHADES = 48;
   const shade = (stops, share) => {
