@@ -46,6 +46,14 @@ def svg_figure(draw: Callable[[Figure], None], size_px: tuple[int, int]) -> str:
     return content.replace(INK, "currentColor")
 
 
+def svg_file(draw: Callable[[Figure], None], size_px: tuple[int, int]) -> bytes:
+    """The drawing of `draw(figure)` as an SVG file that stands alone, dark on white; the same drawing gives the same bytes."""
+    content = io.BytesIO()
+    with matplotlib.rc_context(STYLE | {"svg.hashsalt": "crossdem"}):
+        _figure(draw, size_px).savefig(content, format="svg", metadata={"Date": None})
+    return content.getvalue()
+
+
 def png_figure(draw: Callable[[Figure], None], size_px: tuple[int, int]) -> bytes:
     """The drawing of `draw(figure)` as a PNG, dark on white: for where no page gives the colours."""
     content = io.BytesIO()

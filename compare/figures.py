@@ -1,9 +1,12 @@
-"""The report's plots, as SVG text to stand inside the page; lines and letters take the page's colour.
+"""What the report's plots show, drawn on Matplotlib's axes; drawing.py makes pictures of them.
 
 No text of a case or a dataset is drawn: titles and legends belong to the page.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
 
 import matplotlib
 import numpy as np
@@ -15,86 +18,82 @@ from matplotlib.patches import Rectangle
 from . import motion, resistance
 from .colours import EngineStyle, engine_styles
 from .comparison import Comparison
-from .drawing import INK, svg
+from .curve_data import FINE_BIN_M
+from .drawing import INK
 
-FINE_BIN_M = 0.001  # of the thin lines: shows the fluctuation with few points
 COLOUR_STEPS = 8
 
 
-def resistance_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
+def draw_resistance(axes: Axes, comparison: Comparison) -> None:
     """Resistance against depth: thin for each packing (means of 1 mm; of recorded ones per cm), thick for their mean."""
-
-    def draw(axes: Axes) -> None:
-        for engine, style in engine_styles(comparison.engines).items():
-            packings = comparison.packings(engine)
-            lines = [
-                resistance.resistance_profile(run.resistance, FINE_BIN_M)["mean_N"]
-                for run in comparison.of(engine)
-            ] or [profile for _, profile in packings.iterrows()]
-            faint = min(0.55, 4 / max(1, len(lines)))
-            for fine in lines:
-                axes.plot(100 * fine.index, fine, color=style.colour, linewidth=0.8, alpha=faint)
-            if len(packings):
-                mean = packings.mean()
-                _thick(axes, 100 * mean.index, mean, style)
-        axes.set(xlabel="depth of the tip, cm", ylabel="resistance, N")
-        axes.set_xlim(left=0)
-
-    return svg(draw, size_px)
+    for engine, style in engine_styles(comparison.engines).items():
+        packings = comparison.packings(engine)
+        lines = [
+            resistance.resistance_profile(run.resistance, FINE_BIN_M)["mean_N"]
+            for run in comparison.of(engine)
+        ] or [profile for _, profile in packings.iterrows()]
+        faint = min(0.55, 4 / max(1, len(lines)))
+        for fine in lines:
+            axes.plot(100 * fine.index, fine, color=style.colour, linewidth=0.8, alpha=faint)
+        if len(packings):
+            mean = packings.mean()
+            _thick(axes, 100 * mean.index, mean, style)
+    axes.set(xlabel="depth of the tip, cm", ylabel="resistance, N")
+    axes.set_xlim(left=0)
 
 
-def movement_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
+def draw_movement(axes: Axes, comparison: Comparison) -> None:
     """Mean downward displacement of the particles near the bar against depth, mean of all packings."""
-
-    def draw(axes: Axes) -> None:
-        speed_m_s = comparison.case.resolved["bar"]["speed_m_s"]
-        for engine, style in engine_styles(comparison.engines).items():
-            runs = comparison.of(engine)
-            if runs:
-                history = pd.concat(
-                    [motion.near_bar_history(run)["downward_m"] for run in runs], axis="columns"
-                )
-                depth_cm = 100 * speed_m_s * history.index.to_numpy()
-                _thick(axes, depth_cm, 1000 * history.mean(axis="columns"), style)
-        axes.set(xlabel="depth of the tip, cm", ylabel="downward movement, mm")
-        axes.set_xlim(left=0)
-
-    return svg(draw, size_px)
+    speed_m_s = comparison.case.resolved["bar"]["speed_m_s"]
+    for engine, style in engine_styles(comparison.engines).items():
+        runs = comparison.of(engine)
+        if runs:
+            history = pd.concat(
+                [motion.near_bar_history(run)["downward_m"] for run in runs], axis="columns"
+            )
+            depth_cm = 100 * speed_m_s * history.index.to_numpy()
+            _thick(axes, depth_cm, 1000 * history.mean(axis="columns"), style)
+    axes.set(xlabel="depth of the tip, cm", ylabel="downward movement, mm")
+    axes.set_xlim(left=0)
 
 
-def surface_plot(comparison: Comparison, size_px: tuple[int, int]) -> str:
+def draw_surface(axes: Axes, comparison: Comparison) -> None:
     """Surface of the bed at the end, mean of all packings; grey: at t = 0, mean of all runs."""
-
-    def draw(axes: Axes) -> None:
-        before = [motion.surface_profile(run, 0) for run in comparison.datasets]
-        start = pd.concat(before, axis="columns").mean(axis="columns")
-        axes.plot(100 * start.index, 100 * start, color=INK, alpha=0.5, linewidth=1)
-        for engine, style in engine_styles(comparison.engines).items():
-            after = [motion.surface_profile(run) for run in comparison.of(engine)]
-            if after:
-                end = pd.concat(after, axis="columns").mean(axis="columns")
-                _thick(axes, 100 * end.index, 100 * end, style)
-        bar = comparison.case.resolved["bar"]
-        left_cm = 100 * (bar["centre_x_m"] - bar["width_m"] / 2)
-        axes.axvspan(left_cm, left_cm + 100 * bar["width_m"], color=INK, alpha=0.15, linewidth=0)
-        axes.set(xlabel="x, cm", ylabel="height of the surface, cm")
-
-    return svg(draw, size_px)
+    before = [motion.surface_profile(run, 0) for run in comparison.datasets]
+    start = pd.concat(before, axis="columns").mean(axis="columns")
+    axes.plot(100 * start.index, 100 * start, color=INK, alpha=0.5, linewidth=1)
+    for engine, style in engine_styles(comparison.engines).items():
+        after = [motion.surface_profile(run) for run in comparison.of(engine)]
+        if after:
+            end = pd.concat(after, axis="columns").mean(axis="columns")
+            _thick(axes, 100 * end.index, 100 * end, style)
+    bar = comparison.case.resolved["bar"]
+    left_cm = 100 * (bar["centre_x_m"] - bar["width_m"] / 2)
+    axes.axvspan(left_cm, left_cm + 100 * bar["width_m"], color=INK, alpha=0.15, linewidth=0)
+    axes.set(xlabel="x, cm", ylabel="height of the surface, cm")
 
 
-def displacement_plots(comparison: Comparison, size_px: tuple[int, int]) -> dict[str, str]:
-    """Displacement field at the end for each engine with datasets, mean of all packings, in one scale of colours."""
-    fields = {
+def displacement_fields(comparison: Comparison) -> dict[str, pd.DataFrame]:
+    """Displacement field at the end of each engine with datasets, mean of all packings."""
+    return {
         engine: motion.field_over_seeds([motion.displacement_field(run) for run in runs])
         for engine in comparison.engines
         if (runs := comparison.of(engine))
     }
+
+
+def draw_fields(
+    comparison: Comparison, fields: dict[str, pd.DataFrame]
+) -> dict[str, Callable[[Axes], None]]:
+    """What draws each of the `fields`, in one scale of colours."""
     if not fields:
         return {}
     levels_mm = _levels_mm(max(_length_mm(field).max() for field in fields.values()))
     tip_m = comparison.datasets[0].motion.bar_tip_m[-1]
     return {
-        engine: svg(lambda axes: _draw_field(axes, field, comparison, tip_m, levels_mm), size_px)
+        engine: partial(
+            _draw_field, field=field, comparison=comparison, tip_m=tip_m, levels_mm=levels_mm
+        )
         for engine, field in fields.items()
     }
 

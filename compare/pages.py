@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 import jinja2
@@ -16,10 +19,15 @@ from .record import libraries, plain
 from .wording import MINUS, glued, printable
 
 TEMPLATES = Path(__file__).parent / "templates"
+ASSETS = Path(__file__).parent / "assets"
 
 
-def render(name: str, values: dict) -> str:
-    """The template `name` with `values`; text among them is escaped, Markup is not."""
+def render(name: str, values: dict, assets: Iterable[str] = ()) -> str:
+    """The template `name` with `values`; text among them is escaped, Markup is not.
+
+    The scripts and styles among the `assets` become part of the page, which allows these scripts by their hash and no other.
+    """
+    assets = list(assets)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,
@@ -29,8 +37,29 @@ def render(name: str, values: dict) -> str:
         lstrip_blocks=True,
     )
     environment.filters |= {"cell": _cell, "glued": glued, "shown": _shown, "css": _css}
-    style = Markup((TEMPLATES / "report.css").read_text(encoding="utf-8"))
-    return environment.get_template(name).render(values | {"style": style})
+    scripts = [_text(ASSETS / asset) for asset in assets if asset.endswith(".js")]
+    styles = [_text(ASSETS / asset) for asset in assets if asset.endswith(".css")]
+    own = {
+        "style": Markup("\n").join([*styles, _text(TEMPLATES / "report.css")]),
+        "scripts": scripts,
+        "script_sources": Markup(" ".join(map(_source, scripts))) or Markup("'none'"),
+    }
+    return environment.get_template(name).render(values | own)
+
+
+def embedded(data: object) -> Markup:
+    """`data` as JSON that can stand in a <script> element, whatever texts are in it."""
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return Markup(text.replace("<", "\\u003c"))
+
+
+def _text(path: Path) -> Markup:
+    return Markup(path.read_text(encoding="utf-8"))
+
+
+def _source(script: str) -> str:
+    """What a content security policy calls this very script."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
 
 
 def _printable(value: object) -> object:

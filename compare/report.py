@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 from markupsafe import Markup
@@ -24,17 +25,30 @@ from . import (
 from .checks import ALARM_LEVEL, SEEDS_FOR_INTERVAL
 from .colours import engine_styles
 from .comparison import Comparison
+from .curve_data import curve_data
+from .drawing import svg
+from .figure_files import write_figures
 from .junit import junit_xml
-from .pages import render
+from .pages import embedded, render
 from .record import libraries, record
 from .recorded import DATE
+from .viewer import viewer_data
 
 WIDE_PX, NARROW_PX, PANEL_PX = (900, 400), (380, 320), (440, 320)
 FIELD_PX = (400, 460)
+ASSETS = ("uPlot.min.css", "uPlot.iife.min.js", "viewer.js", "curves.js", "filter.js")
+SECTIONS = {
+    "beds": "Motion",
+    "resistance": "Resistance",
+    "checks": "Checks",
+    "horizon": "Particle by particle",
+    "ladder": "Ladder and attribution",
+    "provenance": "Provenance",
+}
 
 
 def write_report(comparison: Comparison, out_dir: Path) -> Path:
-    """Write the four files into `out_dir`, each whole or not at all; returns the path of report.html, written last."""
+    """Write the four files and figures/ into `out_dir`, each whole or not at all; returns the path of report.html, written last."""
     out_dir = Path(out_dir)
     out_dir.mkdir(parents=True, exist_ok=True)
     values = _values(comparison)
@@ -42,8 +56,9 @@ def write_report(comparison: Comparison, out_dir: Path) -> Path:
     write_whole(out_dir / "report.json", (text + "\n").encode())
     write_whole(out_dir / "junit.xml", junit_xml(comparison))
     write_whole(out_dir / "report.md", render("report.md", values).encode())
-    values |= _pictures(comparison)
-    write_whole(out_dir / "report.html", render("report.html", values).encode())
+    write_figures(comparison, out_dir)
+    values |= _pictures(comparison) | {"neighbours": _neighbours(out_dir)}
+    write_whole(out_dir / "report.html", render("report.html", values, ASSETS).encode())
     return out_dir / "report.html"
 
 
@@ -93,18 +108,26 @@ def _pictures(comparison: Comparison) -> dict:
         f"{comparison.case.resolved['time']['penetration_s'] * stage:.3g} s"
         for stage in beds.STAGES
     ]
+    seen, curves = viewer_data(runs), curve_data(comparison)
     return {
+        "sections": SECTIONS.items(),
+        "absent": ([] if runs else ["beds"])
+        + ([] if comparison.ensemble.manifests else ["resistance"]),
+        "viewer": embedded(seen) if seen else None,
+        "curves": embedded(curves) if curves else None,
         "colours": {
             engine: style.colour for engine, style in engine_styles(comparison.engines).items()
         },
-        "resistance_wide": Markup(figures.resistance_plot(comparison, WIDE_PX)),
-        "resistance_narrow": Markup(figures.resistance_plot(comparison, NARROW_PX)),
+        "resistance_wide": _plot(figures.draw_resistance, comparison, WIDE_PX),
+        "resistance_narrow": _plot(figures.draw_resistance, comparison, NARROW_PX),
         "fields": {
-            engine: Markup(svg)
-            for engine, svg in figures.displacement_plots(comparison, FIELD_PX).items()
+            engine: Markup(svg(draw, FIELD_PX))
+            for engine, draw in figures.draw_fields(
+                comparison, figures.displacement_fields(comparison)
+            ).items()
         },
-        "surface": Markup(figures.surface_plot(comparison, PANEL_PX)) if runs else "",
-        "movement": Markup(figures.movement_plot(comparison, PANEL_PX)),
+        "surface": _plot(figures.draw_surface, comparison, PANEL_PX) if runs else "",
+        "movement": _plot(figures.draw_movement, comparison, PANEL_PX),
         "beds": {
             engine: (
                 run.seed,
@@ -119,6 +142,19 @@ def _pictures(comparison: Comparison) -> dict:
         "opinions": opinion_tables.values(comparison.opinions)
         | opinion_figures.pictures(comparison.opinions, comparison.case.resolved),
     }
+
+
+def _neighbours(out_dir: Path) -> list[str]:
+    """The other pages of this case that the commands wrote into the report's folder, as paths from there."""
+    return sorted(
+        page.relative_to(out_dir).as_posix()
+        for name in ("ladder.html", "horizon/horizon.html", "explain-*/explain.html")
+        for page in out_dir.glob(name)
+    )
+
+
+def _plot(draw: Callable, comparison: Comparison, size_px: tuple[int, int]) -> Markup:
+    return Markup(svg(lambda axes: draw(axes, comparison), size_px))
 
 
 def _versions(comparison: Comparison) -> dict[str, str]:

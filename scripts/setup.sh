@@ -2,6 +2,7 @@
 # Makes a Debian machine ready: installs what scripts/packages.txt lists and is missing, then builds.
 # usage: scripts/setup.sh "SECTION..." PRESET[:TARGET]...
 # Sections of packages.txt, besides [engines]; CMake presets, each with the one target to build (default: all).
+# With [checks] the browser tests get the one package from npm that they need.
 # A second time it neither installs nor rebuilds. Output of apt and the compiler goes to build/setup.log.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -74,6 +75,9 @@ if command -v dpkg-query >/dev/null; then
   install_missing $1
 else
   say "not a Debian system: install the like of what scripts/packages.txt lists by hand" >&2
+fi
+if [[ " $1 " == *" checks "* ]]; then
+  logged "installing what drives the browser (tests/browser)" npm ci --prefix tests/browser --ignore-scripts --no-audit --no-fund
 fi
 shift
 for wanted in "$@"; do
