@@ -19,12 +19,10 @@ packages_in() {
                         on && !/^#/ && NF { print $1 }' scripts/packages.txt
 }
 
-# missing PACKAGE...: those of them that are not installed
+# missing PACKAGE...: those of them that are neither installed nor provided by one that is, as npm is by some nodejs
 missing() {
-  local package
-  for package in "$@"; do
-    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || echo "$package"
-  done
+  printf '%s\n' "$@" | grep -vxF -f <(dpkg-query -W -f '${db:Status-Status} ${Package}, ${Provides}\n' |
+    sed -n 's/^installed //p' | tr ',' '\n' | sed 's/^ *//; s/ .*//; /^$/d') || true
 }
 
 # may_install: sets apt, the way to run apt-get here; fails where there is none
