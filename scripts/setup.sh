@@ -74,8 +74,9 @@ if command -v dpkg-query >/dev/null; then
 else
   say "not a Debian system: install the like of what scripts/packages.txt lists by hand" >&2
 fi
-if [[ " $1 " == *" checks "* ]]; then
-  logged "installing what drives the browser (tests/browser)" npm ci --prefix tests/browser --ignore-scripts --no-audit --no-fund
+browser=tests/browser
+if [[ " $1 " == *" checks "* && ! $browser/node_modules/.package-lock.json -nt $browser/package-lock.json ]]; then
+  logged "installing what drives the browser ($browser)" npm ci --prefix "$browser" --ignore-scripts --no-audit --no-fund
 fi
 shift
 for wanted in "$@"; do
