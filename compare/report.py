@@ -41,7 +41,7 @@ SECTIONS = {
     "beds": "Motion",
     "resistance": "Resistance",
     "checks": "Checks",
-    "horizon": "Particle by particle",
+    "horizon": "Horizon",
     "ladder": "Ladder and attribution",
     "provenance": "Provenance",
 }
