@@ -2,6 +2,7 @@
 // What every contact law speaks of.
 
 #include <concepts>
+#include <limits>
 
 #include "crossdem/case.hpp"
 
@@ -26,17 +27,24 @@ struct ContactForce {
   double rolling = 0.0;  // f_r [N]
 };
 
-/// The memory of one contact: the spring forces of Eqs. (5), (7), and that of rolling.
+/// In place of e_n where there is no contact: the next overlap is a first one, Eqs. (3), (4).
+inline constexpr double not_touching = -std::numeric_limits<double>::infinity();
+
+/// The memory of one contact: the spring forces of Eqs. (5), (7).
 struct ContactSpring {
-  double normal = 0.0;    // e_n [N]
-  double shear = 0.0;     // e_s [N]
-  bool touching = false;  // false: the next overlap is a first contact, Eqs. (3), (4)
-  double rolling = 0.0;   // e_r [N]
+  double normal = not_touching;  // e_n [N]
+  double shear = 0.0;            // e_s [N]
+  [[nodiscard]] bool touching() const { return normal != not_touching; }
+};
+
+/// With one against rolling.
+struct RollingContactSpring : ContactSpring {
+  double rolling = 0.0;  // e_r [N]
 };
 
 template <class Law>
 concept ContactLaw = requires(const Law& law, RelativeDisplacement u, const ContactParameters& parameters, double dt,
-                              ContactSpring& spring) {
+                              RollingContactSpring& spring) {
   { law.force(u, parameters, dt, spring) } -> std::same_as<ContactForce>;
 };
 

@@ -16,7 +16,8 @@ struct RelativeMotion {
         shear(relative.y() * normal_direction.x() - relative.x() * normal_direction.y() + turning) {}
 };
 
-using PaperContacts = Contacts<ContactSpring, ContactSpring>;
+template <class Spring>
+using PaperContacts = Contacts<Spring, Spring>;
 
 /// What a disc has of its contact with a surface.
 struct SurfaceForce {
@@ -38,10 +39,10 @@ inline double work_of(const ContactForce& f, const RelativeDisplacement& u) {
 
 /// The law of a pair, a wall or the bar in the place of j. False where they do not touch. Inlined by force: a disc that
 /// is handed over in memory, number by number, would be waited for when it is read as vectors.
-template <class Law>
+template <class Law, class Spring>
 [[gnu::always_inline]] inline bool surface_force(const Law& law, const Surfaces& surfaces,
                                                  const ContactParameters& parameters, double dt,
-                                                 PaperContacts::OnSurface& contact, const DiscInMotion& disc,
+                                                 SurfaceContact<Spring>& contact, const DiscInMotion& disc,
                                                  SurfaceForce& f) {
   const NearestPoint nearest = surfaces.nearest_point(contact.surface, disc.centre);
   if (!surfaces.touch(contact.surface, nearest, disc.centre, disc.radius, law.readings.bar_corner)) {
@@ -73,8 +74,12 @@ inline Vector2 received(const ContactForce& force, const Vector2& normal) {
 
 template <class Scheme>
 class Step {
+  using OwnContacts = PaperContacts<typename Scheme::Spring>;
+  using Pair = typename OwnContacts::Pair;
+  using OnSurface = typename OwnContacts::OnSurface;
+
  public:
-  Step(World& world, PaperContacts& contacts, const Scheme& scheme)
+  Step(World& world, OwnContacts& contacts, const Scheme& scheme)
       : w_(world),
         p_(world.particles),
         contacts_(contacts),
@@ -84,14 +89,14 @@ class Step {
   /// All forces, then all moves.
   void forces_then_moves() {
     begin();
-    for (PaperContacts::Pair& contact : contacts_.pairs()) {
+    for (Pair& contact : contacts_.pairs()) {
       PairForce f;
       if (!pair_force(contact, f)) continue;
       add(contact.i, f.force, f.normal, f.lever_i, -f.rolling_moment);
       add(contact.j, f.force, -f.normal, f.lever_j, f.rolling_moment);
     }
     add_in_sums(w_, contacts_.on_surfaces(),
-                [this](PaperContacts::OnSurface& contact, SurfaceTotals& totals) { surface_load(contact, totals); });
+                [this](OnSurface& contact, SurfaceTotals& totals) { surface_load(contact, totals); });
     for (std::size_t i = 0; i < p_.count(); ++i) scheme_.integrator.advance(p_, i, w_.loads[i], w_.gravity, w_.dt);
     end();
   }
@@ -139,13 +144,13 @@ class Step {
 
   /// False where the two neither touch nor hold together: a joint is over where its spring would hold its strength,
   /// whatever Eq. (5) has left in it.
-  bool pair_force(PaperContacts::Pair& contact, PairForce& f) {
+  bool pair_force(Pair& contact, PairForce& f) {
     const std::uint32_t i = contact.i;
     const std::uint32_t j = contact.j;
     const Vector2 between = p_.position[j] - p_.position[i];
     const double reach = p_.radius[i] + p_.radius[j];
     const double distance_squared = between.squaredNorm();
-    const double farthest = reach + (contact.memory.touching ? joint_stretch_ : 0.0);
+    const double farthest = reach + (contact.memory.touching() ? joint_stretch_ : 0.0);
     if (distance_squared >= farthest * farthest) {
       contact.memory = {};
       return false;
@@ -173,7 +178,7 @@ class Step {
     return true;
   }
 
-  void surface_load(PaperContacts::OnSurface& contact, SurfaceTotals& totals) {
+  void surface_load(OnSurface& contact, SurfaceTotals& totals) {
     const std::uint32_t i = contact.i;
     const DiscInMotion disc{p_.position[i], p_.radius[i],   p_.displacement[i],
                             p_.rotation[i], p_.velocity[i], p_.spin[i]};
@@ -202,7 +207,7 @@ class Step {
 
   World& w_;
   Particles& p_;
-  PaperContacts& contacts_;
+  OwnContacts& contacts_;
   const Scheme& scheme_;
   double joint_stretch_;  // [m]
 };

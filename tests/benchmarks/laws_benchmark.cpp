@@ -66,9 +66,8 @@ void tanaka(benchmark::State& state) {
   const auto prepare = [](const Contact& c) {
     const double normal = c.velocity.dot(c.normal) * dt;
     const double shear = c.velocity.dot(c.tangent()) * dt;
-    return Prepared{{normal, shear, c.overlap, normal, shear},
-                    {parameters().normal_stiffness * c.overlap, c.shear_spring, true},
-                    {}};
+    return Prepared{
+        {normal, shear, c.overlap, normal, shear}, {parameters().normal_stiffness * c.overlap, c.shear_spring}, {}};
   };
   evaluate(state, prepare,
            [](Prepared& c) { c.force = TanakaLaw<DefaultReadings>{}.force(c.moved, parameters(), dt, c.spring); });

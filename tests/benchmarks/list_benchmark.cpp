@@ -21,7 +21,7 @@ BENCHMARK(search)->Name("close_pairs")->Apply(bed_sizes);
 void rebuild(benchmark::State& state) {
   const Particles& bed = bed_of(particles_of(state));
   const Surfaces surfaces{.width = case_of(bed.count()).container.width, .bar = {}};
-  PaperContacts contacts(MemoryOwner::pair, ListSkin(bed));
+  PaperContacts<ContactSpring> contacts(MemoryOwner::pair, ListSkin(bed));
   long steps = 0;
   for (auto _ : state) contacts.rebuild(bed, surfaces, steps += 100);
   report(state, "particle", bed.count());

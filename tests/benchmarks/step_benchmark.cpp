@@ -69,7 +69,7 @@ struct Batches {
       batch.j[k] = close[n].j;
       for (batch::Column& column : batch.memory) column[k] = 0.0;
       if constexpr (std::is_same_v<Scheme, PaperBatches>)
-        batch.memory[0][k] = closer_than(0.0, bed, close[n]) ? 0.1 : batch::not_touching;
+        batch.memory[0][k] = closer_than(0.0, bed, close[n]) ? 0.1 : not_touching;
     }
   }
 };

@@ -170,7 +170,7 @@ MEMORIES = (
         MEMORY,
         STEP,
         "if (distance_squared >= farthest * farthest) {\n      contact.memory = {};",
-        "if (distance_squared >= farthest * farthest) {\n      contact.memory.normal = 0.0;",
+        "if (distance_squared >= farthest * farthest) {\n      if (contact.memory.touching()) contact.memory.normal = 0.0;",
     ),
 )
 

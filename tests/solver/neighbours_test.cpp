@@ -102,7 +102,8 @@ TEST(Neighbours, AListThatLastsGivesTheBitsOfOneMadeAnewEachStep) {
   c.bar->speed = 0.5;
   Simulation listed(c, cloud(), 0.045);
   World anew = world_of(c, cloud(), 0.045);
-  PaperContacts only_overlapping(MemoryOwner::pair, ListSkin::fixed(0.0));  // made anew whenever anything has moved
+  PaperContacts<ContactSpring> only_overlapping(MemoryOwner::pair,
+                                                ListSkin::fixed(0.0));  // made anew whenever anything has moved
   const PaperScheme scheme;
   Step<PaperScheme> step(anew, only_overlapping, scheme);
   listed.start_bar();
@@ -123,23 +124,23 @@ TEST(Contacts, AContactKeepsItsSpringsWhenTheListIsMadeAnew) {
   Particles p = small_disc({0.03, 0.0019}, {0, 0});
   p.add(small_radius, small_mass, {0.0339, 0.0019}, Vector2::Zero());
   const Surfaces surfaces{.width = 0.06, .bar = {}};
-  PaperContacts contacts(MemoryOwner::pair, ListSkin::fixed(0.001));
+  PaperContacts<ContactSpring> contacts(MemoryOwner::pair, ListSkin::fixed(0.001));
   contacts.rebuild(p, surfaces);
-  contacts.pairs().at(0).memory = {1.0, 2.0, true};
-  contacts.on_surfaces().at(1).memory = {3.0, 4.0, true};
+  contacts.pairs().at(0).memory = {1.0, 2.0};
+  contacts.on_surfaces().at(1).memory = {3.0, 4.0};
   p.add(small_radius, small_mass, {0.026, 0.0019}, Vector2::Zero());  // a new neighbour of the first
   contacts.rebuild(p, surfaces);
   ASSERT_EQ(contacts.pairs().size(), 2U);
   EXPECT_EQ(contacts.pairs()[0].memory.shear, 2.0);
-  EXPECT_FALSE(contacts.pairs()[1].memory.touching);
+  EXPECT_FALSE(contacts.pairs()[1].memory.touching());
   EXPECT_EQ(contacts.on_surfaces().at(1).memory.normal, 3.0);
-  EXPECT_FALSE(contacts.on_surfaces().at(2).memory.touching);
+  EXPECT_FALSE(contacts.on_surfaces().at(2).memory.touching());
 }
 
 TEST(Contacts, TheListIsOutdatedBeforeTwoSurfacesCanHaveMetUnseen) {
   Particles p = small_disc({0.03, 0.02}, {0, 0});
   Surfaces surfaces{.width = 0.06, .bar = Bar({.width = 0.01, .length = 0.1, .centre_x = 0.03, .speed = 1.0}, 0.04)};
-  PaperContacts contacts(MemoryOwner::pair, ListSkin::fixed(0.001));
+  PaperContacts<ContactSpring> contacts(MemoryOwner::pair, ListSkin::fixed(0.001));
   EXPECT_TRUE(contacts.outdated(p, surfaces)) << "there is no list yet";
   contacts.rebuild(p, surfaces);
   p.position[0].x() += 0.00049;  // two particles may have approached by twice this

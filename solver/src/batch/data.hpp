@@ -42,9 +42,8 @@ struct alignas(64) Pairs {
   std::array<Column, memories> memory;
 };
 
-/// Remembers e_n and e_s [N].
+/// Remembers e_n, or not_touching, and e_s [N].
 using TanakaPairs = Pairs<2>;
-inline constexpr double not_touching = -1.0;  // in place of e_n, which Eq. (8) leaves not below zero
 
 /// Remembers x and y of the shear spring [m].
 using LiggghtsPairs = Pairs<2>;

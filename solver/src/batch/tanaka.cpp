@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "batch/tanaka.cpp"
 #include <hwy/foreach_target.h>
 
+#include "../contact_law.hpp"
 #include "lanes.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -29,11 +29,13 @@ template <class Choice>
 struct TanakaLaw {
   Choice readings;
 
-  /// The force of a contact that overlaps, or of a joint; `spring` is its memory and is brought up to date.
-  ContactForce force(RelativeDisplacement u, const ContactParameters& p, double dt, ContactSpring& spring) const {
-    if (!spring.touching) {
+  /// The force of a contact that overlaps, or of a joint; `spring` is its memory and is brought up to date. Where it
+  /// has none against rolling, nothing resists that.
+  template <class Spring>
+  ContactForce force(RelativeDisplacement u, const ContactParameters& p, double dt, Spring& spring) const {
+    if (!spring.touching()) {
       u = share_in_contact(u);
-      spring = {.touching = true};
+      unload(spring);
     }
     if (readings.normal_spring == NormalSpring::incremental) {
       spring.normal += p.normal_stiffness * u.normal;  // Eq. (5)
@@ -50,12 +52,20 @@ struct TanakaLaw {
                                                                 : std::abs(f.normal + p.tensile_strength);
     f.shear =
         capped(spring.shear, p.shear_stiffness * u.shear, p.friction * pressed, p.shear_damping / dt * u.damped_shear);
-    if (p.rolling_friction > 0.0)
-      f.rolling = capped(spring.rolling, p.shear_stiffness * u.rolling, p.rolling_friction * pressed, 0.0);
+    if constexpr (requires { spring.rolling; })
+      if (p.rolling_friction > 0.0)
+        f.rolling = capped(spring.rolling, p.shear_stiffness * u.rolling, p.rolling_friction * pressed, 0.0);
     return f;
   }
 
  private:
+  /// Touching, without any force.
+  template <class Spring>
+  static void unload(Spring& spring) {
+    spring = {};
+    spring.normal = 0.0;
+  }
+
   /// Eqs. (7), (9): a spring that grows by `more` up to the `cap`, where it slips and its `dashpot` is off.
   static double capped(double& spring, double more, double cap, double dashpot) {
     spring += more;
@@ -82,13 +92,16 @@ struct TanakaLaw {
 
   /// Eq. (8): no tension in the spring, or none beyond its joint's strength; what is left of the contact's memory is a
   /// reading.
-  ContactForce lose(ContactSpring& spring) const {
+  template <class Spring>
+  ContactForce lose(Spring& spring) const {
     if (readings.lost_contact == LostContact::forget) {
       spring = {};
     } else if (readings.lost_contact == LostContact::keep_zero) {
-      spring = {.touching = true};
+      unload(spring);
     } else {
-      spring.shear = spring.rolling = 0.0;
+      const double kept = spring.normal;
+      unload(spring);
+      spring.normal = kept;
     }
     return {};
   }

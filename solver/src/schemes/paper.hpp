@@ -8,12 +8,14 @@ namespace crossdem {
 
 /// The default readings: known to the compiler, so that the step holds no branch for the others.
 struct PaperScheme {
+  using Spring = ContactSpring;
   TanakaLaw<DefaultReadings> law;
   AveragedDisplacement integrator;
 };
 
-/// Any readings.
+/// Any readings, and rolling resistance.
 struct MixedScheme {
+  using Spring = RollingContactSpring;
   TanakaLaw<Readings> law;
   ChosenIntegrator integrator;
 };
@@ -21,7 +23,8 @@ struct MixedScheme {
 template <class Scheme>
 class PaperStepper final : public Stepper {
  public:
-  using OwnContacts = PaperContacts;
+  using Spring = typename Scheme::Spring;
+  using OwnContacts = PaperContacts<Spring>;
 
   PaperStepper(const Scheme& scheme, const Readings& readings, World& world)
       : scheme_(scheme),
@@ -50,14 +53,16 @@ class PaperStepper final : public Stepper {
       for (long n = 0; n < steps; ++n) step.forces_then_moves();
   }
 
-  [[nodiscard]] PaperContacts& contacts() { return contacts_; }
+  [[nodiscard]] OwnContacts& contacts() { return contacts_; }
 
   /// e_n^2 / 2 k_n + (e_s^2 + e_r^2) / 2 k_s.
   [[nodiscard]] double spring_energy(const World& world) const override {
     double energy = 0.0;
-    const auto add = [&](const ContactSpring& spring, const ContactParameters& parameters) {
+    const auto add = [&](const Spring& spring, const ContactParameters& parameters) {
+      if (!spring.touching()) return;
       energy += spring.normal * spring.normal / (2 * parameters.normal_stiffness);
-      const double shear_squared = spring.shear * spring.shear + spring.rolling * spring.rolling;
+      double shear_squared = spring.shear * spring.shear;
+      if constexpr (requires { spring.rolling; }) shear_squared += spring.rolling * spring.rolling;
       if (parameters.shear_stiffness > 0.0) energy += shear_squared / (2 * parameters.shear_stiffness);
     };
     for (const auto& contact : contacts_.pairs()) add(contact.memory, world.particle_particle);
@@ -73,7 +78,7 @@ class PaperStepper final : public Stepper {
       const Vector2 between = p.position[contact.j] - p.position[contact.i];
       const double overlap = p.radius[contact.i] + p.radius[contact.j] - between.norm();
       if (overlap <= 0.0) continue;
-      contact.memory = {world.particle_particle.normal_stiffness * overlap, 0.0, true};
+      contact.memory.normal = world.particle_particle.normal_stiffness * overlap;
       const Vector2 push = contact.memory.normal * between.normalized();
       world.loads[contact.i].force -= push;
       if (!in_turn_) world.loads[contact.j].force += push;  // else the other has a contact of its own
@@ -83,7 +88,7 @@ class PaperStepper final : public Stepper {
       const NearestPoint nearest = world.surfaces.nearest_point(contact.surface, centre);
       if (!world.surfaces.touch(contact.surface, nearest, centre, p.radius[contact.i], corner)) continue;
       const double overlap = p.radius[contact.i] - nearest.distance;
-      contact.memory = {world.particle_wall.normal_stiffness * overlap, 0.0, true};
+      contact.memory.normal = world.particle_wall.normal_stiffness * overlap;
       const Vector2 received = -contact.memory.normal * nearest.normal;
       world.loads[contact.i].force += received;
       world.totals.add(world.surfaces, contact.surface, centre, received);
@@ -92,7 +97,7 @@ class PaperStepper final : public Stepper {
 
   Scheme scheme_;
   bool in_turn_;
-  PaperContacts contacts_;
+  OwnContacts contacts_;
 };
 
 }  // namespace crossdem

@@ -57,18 +57,14 @@ class PaperBatches {
     p.rotation[i] = group.rotation[k];
   }
 
-  static std::array<double, 2> numbers(const ContactSpring& spring) {
-    return {spring.touching ? spring.normal : batch::not_touching, spring.shear};
-  }
-  static ContactSpring memory(const std::array<double, 2>& numbers) {
-    return numbers[0] >= 0.0 ? ContactSpring{numbers[0], numbers[1], true} : ContactSpring{};
-  }
+  static std::array<double, 2> numbers(const ContactSpring& spring) { return {spring.normal, spring.shear}; }
+  static ContactSpring memory(const std::array<double, 2>& numbers) { return {numbers[0], numbers[1]}; }
 
   static void add_pair_forces(const World& w, std::span<Pairs> pairs, const batch::Disc* discs, batch::Load* loads) {
     batch::add_tanaka_forces(pairs, discs, loads, w.particle_particle, w.dt);
   }
 
-  static void surface(const World& w, const Surfaces& surfaces, const OwnBar&, PaperContacts::OnSurface& contact,
+  static void surface(const World& w, const Surfaces& surfaces, const OwnBar&, SurfaceContact<ContactSpring>& contact,
                       const batch::Disc& disc, const Group& group, batch::Load& load, SurfaceTotals& totals) {
     const std::size_t k = contact.i % batch::width;
     const DiscInMotion motion{{disc.x, disc.y},
