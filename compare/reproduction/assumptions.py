@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 
 from crossdem.adapters.case import Case
 
-from .changes import change_table, draw_changes
+from .changes import change_picture
 from .penetration_resistance import wider
 from .runs import Found
-from .soil_motion import AS_PRINTED
-from .study import Findings, Picture, Setting
+from .study import AS_PRINTED, Findings, Setting
 
 LARGER_SHARES = (0.3, 0.7)  # of the larger discs, by number
 LOOSE = 0.77  # share of a bed's area that discs fill, less than any settled bed has: so high lies no particle
@@ -26,15 +24,12 @@ def others(case: Case) -> list[Setting]:
 
 
 def findings(found: Found) -> Findings:
-    varied = others(found.case)
-    picture = Picture(
+    picture = change_picture(
         "assumptions",
         "Assumptions, and what others would change",
-        "Native: ratio to the case as it stands, and its 95 % interval. The mixture is assumed half and half by number, the "
-        "bar 1 cm wide and to start at the topmost particle under it.",
-        (960, 90 + 34 * len(varied)),
-        partial(draw_changes, found, AS_PRINTED, varied),
-        change_table(found, AS_PRINTED, varied),
+        "The mixture is assumed half and half by number, the bar 1 cm wide and to start at the topmost particle under it.",
+        found,
+        others(found.case),
     )
     return Findings("What the text leaves open", (), (picture,))
 

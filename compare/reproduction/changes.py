@@ -1,21 +1,22 @@
-"""What settings change of a few quantities: ratios to the case as the paper has it, as a table and drawn."""
+"""What settings change of a few quantities in the native solver: ratios to the case as the paper has it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from ..drawing import INK
 from ..quantities import QUANTITIES
-from .estimates import ratio_of
+from .estimates import Estimate, ratio_of
 from .observation import SHARE, WAVELENGTH
 from .runs import Found
-from .study import Setting
+from .study import AS_PRINTED, RESISTANCE, Picture, Setting
 
 SHOWN = {
-    "mean_resistance_N": QUANTITIES["mean_resistance_N"].title,
+    RESISTANCE: QUANTITIES[RESISTANCE].title,
     SHARE: "fluctuation over resistance",
     WAVELENGTH: "median wavelength",
     "near_bar_movement_m": QUANTITIES["near_bar_movement_m"].title,
@@ -23,23 +24,30 @@ SHOWN = {
 UP, DOWN, UNCLEAR = "#e0752d", "#3b82d6", "#8a8f98"
 
 
-def change_table(found: Found, base: Setting, settings: Sequence[Setting]) -> pd.DataFrame:
-    """A row per setting and quantity: the ratio to `base` in the native solver, its interval, the packings."""
+def ratios(found: Found, quantity: str, settings: Sequence[Setting]) -> dict[str, Estimate]:
+    """Of each setting, by its name."""
+    base = found.of(AS_PRINTED)[quantity]
+    return {one.name: ratio_of(found.of(one)[quantity], base) for one in settings}
+
+
+def change_picture(
+    name: str, title: str, says: str, found: Found, settings: Sequence[Setting]
+) -> Picture:
+    """A panel per quantity of SHOWN, a row per setting, and both as a table. `says` goes on after what is drawn."""
     rows = [
-        {
-            "setting": setting.name,
-            "quantity": quantity,
-            **vars(ratio_of(found.of(setting)[quantity], found.of(base)[quantity])),
-        }
-        for setting in settings
+        {"setting": setting, "quantity": quantity, **vars(ratio)}
         for quantity in SHOWN
+        for setting, ratio in ratios(found, quantity, settings).items()
     ]
-    return pd.DataFrame(rows).rename(columns={"mean": "ratio"})
+    table = pd.DataFrame(rows).rename(columns={"mean": "ratio"})
+    drawn = f"Native: ratio to the case as the paper has it, and its 95 % interval. {says}".rstrip()
+    size_px = (960, 90 + 34 * len(settings))
+    return Picture(name, title, drawn, size_px, partial(_draw, table), table)
 
 
-def draw_changes(found: Found, base: Setting, settings: Sequence[Setting], figure: Figure) -> None:
-    """A panel per quantity, a row per setting; coloured where the interval leaves out no change."""
-    table = change_table(found, base, settings)
+def _draw(table: pd.DataFrame, figure: Figure) -> None:
+    """Coloured where the interval leaves out no change."""
+    names = list(table["setting"].unique())
     panels = figure.subplots(1, len(SHOWN), sharey=True)
     for panel, (quantity, title) in zip(panels, SHOWN.items()):
         panel.axvline(1, color=INK, linewidth=0.8)
@@ -48,6 +56,6 @@ def draw_changes(found: Found, base: Setting, settings: Sequence[Setting], figur
             panel.plot([row["low"], row["high"]], [place, place], color=colour, linewidth=2)
             panel.plot(row["ratio"], place, "o", color=colour, markersize=5)
         panel.set_title(title, fontsize=9)
-        panel.set_yticks(range(len(settings)), [setting.name for setting in settings])
-        panel.set_ylim(len(settings) - 0.5, -0.5)
+        panel.set_yticks(range(len(names)), names)
+        panel.set_ylim(len(names) - 0.5, -0.5)
         panel.set_xlabel("ratio")

@@ -8,11 +8,19 @@ from crossdem.adapters.case import Case
 
 from .estimates import mean_of, ratio_of
 from .observation import SHARE
-from .penetration_resistance import RESISTANCE
 from .runs import Found
 from .scaling import scaled
-from .soil_motion import AS_PRINTED
-from .study import NOT_REPRODUCED, REPRODUCED, UNDECIDED, UNTESTABLE, Claim, Findings, Setting
+from .study import (
+    AS_PRINTED,
+    NOT_REPRODUCED,
+    REPRODUCED,
+    RESISTANCE,
+    UNDECIDED,
+    UNTESTABLE,
+    Claim,
+    Findings,
+    Setting,
+)
 
 DENSITY_KG_M3 = 3900.0  # of alumina
 STIFFNESS = 10.0  # times that of the soil's springs: as far as the resistance is known to depend on it, and beyond

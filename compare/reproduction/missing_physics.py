@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from crossdem.adapters.case import Case
 
-from .changes import change_table, draw_changes
-from .estimates import ratio_of
-from .observation import SHARE
-from .penetration_resistance import NO_EFFECT, RESISTANCE, all_below, explains
+from . import causes
+from .changes import change_picture
 from .runs import Found
-from .soil_motion import AS_PRINTED
-from .study import Claim, Findings, Picture, Setting
+from .study import AS_PRINTED, RESISTANCE, Findings, Setting
 
 STRENGTHS_N = (0.02, 0.05, 0.1)  # of a joint; a disc weighs 2 to 3 mN
 REST_S = 4.0  # a packing holds no stretched joints: the bed settles anew
@@ -50,51 +45,33 @@ def rolling() -> list[Setting]:
 
 
 def findings(found: Found) -> Findings:
-    varied = [*cohesive(), *rolling()]
-    picture = Picture(
-        "missing_physics",
-        "Cohesion and rolling resistance",
-        "Native: ratio to the case as the paper has it, and its 95 % interval. Cohesion is the tension that a joint of two "
-        "discs carries before it breaks; rolling friction limits the moment of a rolling spring at each contact.",
-        (960, 90 + 34 * len(varied)),
-        partial(draw_changes, found, AS_PRINTED, varied),
-        change_table(found, AS_PRINTED, varied),
-    )
     return Findings(
         "What the paper names as missing: section 4.4",
-        (_cohesion(found), _interlocking(found)),
-        (picture,),
-    )
-
-
-def _cohesion(found: Found) -> Claim:
-    base = found.of(AS_PRINTED)
-    shares = {one.name: ratio_of(found.of(one)[SHARE], base[SHARE]) for one in cohesive()}
-    forces = {one.name: ratio_of(found.of(one)[RESISTANCE], base[RESISTANCE]) for one in cohesive()}
-    said = "; ".join(
-        f"{name} {share.as_change()}, the resistance itself {forces[name].as_change()}"
-        for name, share in shares.items()
-    )
-    return Claim(
-        "section 4.4",
-        "The joints carry no tension: that is the other reason for the fluctuation.",
-        f"With joints that do, the fluctuation as a share of the resistance changes: {said}.",
-        all_below(shares, 1.0),
-        list(shares.values())[-1].as_change(),
-        "reproduced where cohesive discs fluctuate less, each interval below no change",
-    )
-
-
-def _interlocking(found: Found) -> Claim:
-    base = found.of(AS_PRINTED)
-    ratios = {one.name: ratio_of(found.of(one)[RESISTANCE], base[RESISTANCE]) for one in rolling()}
-    said = "; ".join(f"{name} {ratio.as_change()}" for name, ratio in ratios.items())
-    most = list(ratios.values())[-1]
-    return Claim(
-        "section 4.4",
-        "Discs do not interlock, they roll: that is the other reason for the low resistance.",
-        f"With a rolling resistance, which stands for interlocking, the mean resistance changes: {said}.",
-        explains(most),
-        most.as_change(),
-        f"reproduced where the largest rolling friction raises the resistance by more than {100 * (NO_EFFECT - 1):.0f} %",
+        (
+            causes.of_fluctuation(
+                found,
+                cohesive(),
+                "The joints carry no tension: that is the other reason for the fluctuation.",
+                "With joints that do, the fluctuation as a share of the resistance changes",
+                (RESISTANCE, "the resistance itself"),
+                "cohesive discs fluctuate less",
+            ),
+            causes.of_low_resistance(
+                found,
+                rolling(),
+                "Discs do not interlock, they roll: that is the other reason for the low resistance.",
+                "With a rolling resistance, which stands for interlocking, the mean resistance changes",
+                "the largest rolling friction raises",
+            ),
+        ),
+        (
+            change_picture(
+                "missing_physics",
+                "Cohesion and rolling resistance",
+                "Cohesion is the tension that a joint of two discs carries before it breaks; rolling friction limits the "
+                "moment of a rolling spring at each contact.",
+                found,
+                [*cohesive(), *rolling()],
+            ),
+        ),
     )

@@ -29,7 +29,7 @@ class Sample:
     with_restless: pd.DataFrame
     profiles: pd.DataFrame  # mean resistance [N]; columns: depth [m]
     spectra: pd.DataFrame  # [N^2 m]; columns: cycles per m of depth
-    layers: pd.DataFrame  # mean downward movement [m] near the bar; columns: (layer, time_s); mean of the packings
+    layers: pd.DataFrame  # as layer_movement() gives it, mean of the packings
     folders: dict[int, Path]
     manifests: tuple[dict, ...]
     failures: tuple[str, ...]  # runs without result, for people

@@ -11,30 +11,20 @@ from matplotlib.figure import Figure
 from crossdem.adapters.case import Case
 
 from ..colours import engine_styles
-from .changes import change_table, draw_changes
-from .estimates import Estimate, mean_of, ratio_of
+from . import causes
+from .changes import change_picture
+from .estimates import mean_of
 from .observation import FINE_M, SHARE, WAVELENGTH
 from .runs import Found
 from .scaling import scaled
-from .soil_motion import AS_PRINTED
-from .study import (
-    CORRECTED,
-    NOT_REPRODUCED,
-    REPRODUCED,
-    UNDECIDED,
-    UNTESTABLE,
-    Claim,
-    Findings,
-    Picture,
-    Setting,
-)
+from .study import AS_PRINTED, RESISTANCE, UNTESTABLE, Claim, Findings, Picture, Setting
+from .verdicts import all_above
 
-RESISTANCE, SLOPE = "mean_resistance_N", "resistance_slope_N_m"
+SLOPE = "resistance_slope_N_m"
 FINER = (2, 4)  # parts of the diameters
 STIFFER = (2, 10)  # times the springs
 WIDER = (0.5, 2)  # times the bar
 CONSIDERABLE = 0.1  # share of the mean resistance: what the paper's word is taken for
-NO_EFFECT = 1.1  # a factor on the resistance: a change within it does not explain an "apparently smaller" one
 
 
 def settings(case: Case) -> list[Setting]:
@@ -68,8 +58,21 @@ def findings(found: Found) -> Findings:
     claims = (
         _growth(found, engines),
         _fluctuation(found, engines),
-        _cause_of_fluctuation(found, finer(case)),
-        _cause_of_low_resistance(found, stiffer(case)),
+        causes.of_fluctuation(
+            found,
+            finer(case),
+            "The discs are large: that is one reason for the fluctuation.",
+            "The fluctuation as a share of the resistance changes with the discs' diameters",
+            (WAVELENGTH, "its median wavelength"),
+            "smaller discs fluctuate less",
+        ),
+        causes.of_low_resistance(
+            found,
+            stiffer(case),
+            "The springs are not stiff enough: that is one reason for the low resistance.",
+            "The mean resistance changes with the stiffness",
+            "springs ten times as stiff raise",
+        ),
         Claim(
             "section 4.4, Fig. 11",
             "The simulated resistance is smaller than the measured one.",
@@ -80,7 +83,6 @@ def findings(found: Found) -> Findings:
             "in proportion",
         ),
     )
-    changes = partial(draw_changes, found, AS_PRINTED, varied)
     pictures = (
         Picture(
             "fig11_resistance",
@@ -99,14 +101,7 @@ def findings(found: Found) -> Findings:
             partial(_draw_spectra, found, [AS_PRINTED, *finer(case)]),
             _spectrum_table(found, [AS_PRINTED, *finer(case)]),
         ),
-        Picture(
-            "fig11_causes",
-            "What discs, springs and bar change",
-            "Native: ratio to the paper's case, and its 95 % interval.",
-            (960, 90 + 34 * len(varied)),
-            changes,
-            change_table(found, AS_PRINTED, varied),
-        ),
+        change_picture("fig11_causes", "What discs, springs and bar change", "", found, varied),
     )
     return Findings("Resistance: Fig. 11", claims, pictures)
 
@@ -137,67 +132,6 @@ def _fluctuation(found: Found, engines: list[str]) -> Claim:
         shares[engines[0]].shown(100, "%") if engines else "",
         f"considerable is taken for more than {100 * CONSIDERABLE:g} % of the mean",
     )
-
-
-def _cause_of_fluctuation(found: Found, settings: list[Setting]) -> Claim:
-    base = found.of(AS_PRINTED)
-    ratios = {one.name: ratio_of(found.of(one)[SHARE], base[SHARE]) for one in settings}
-    lengths = {one.name: ratio_of(found.of(one)[WAVELENGTH], base[WAVELENGTH]) for one in settings}
-    said = "; ".join(
-        f"{name} {ratio.as_change()}, its median wavelength {lengths[name].as_change()}"
-        for name, ratio in ratios.items()
-    )
-    return Claim(
-        "section 4.4",
-        "The discs are large: that is one reason for the fluctuation.",
-        f"The fluctuation as a share of the resistance changes with the discs' diameters: {said}.",
-        all_below(ratios, 1.0),
-        list(ratios.values())[-1].as_change(),
-        "reproduced where smaller discs fluctuate less, each interval below no change",
-    )
-
-
-def _cause_of_low_resistance(found: Found, settings: list[Setting]) -> Claim:
-    base = found.of(AS_PRINTED)
-    ratios = {one.name: ratio_of(found.of(one)[RESISTANCE], base[RESISTANCE]) for one in settings}
-    said = "; ".join(f"{name} {ratio.as_change()}" for name, ratio in ratios.items())
-    stiffest = list(ratios.values())[-1]
-    return Claim(
-        "section 4.4",
-        "The springs are not stiff enough: that is one reason for the low resistance.",
-        f"The mean resistance changes with the stiffness: {said}.",
-        explains(stiffest),
-        stiffest.as_change(),
-        f"reproduced where springs ten times as stiff raise the resistance by more than {100 * (NO_EFFECT - 1):.0f} %; not "
-        "where the interval lies below that; with a correction where it is raised, but by less",
-    )
-
-
-def explains(ratio: Estimate) -> str:
-    """Whether a change of the resistance by `ratio` explains that it was too low: more than NO_EFFECT, or not."""
-    if not ratio.known:
-        return UNDECIDED
-    if ratio.low > NO_EFFECT:
-        return REPRODUCED
-    if ratio.high < NO_EFFECT:
-        return CORRECTED if ratio.low > 1.0 else NOT_REPRODUCED
-    return UNDECIDED
-
-
-def all_above(values: dict[str, Estimate], limit: float) -> str:
-    """REPRODUCED where every interval lies above `limit`, NOT_REPRODUCED where one lies below."""
-    known = [one for one in values.values() if one.known]
-    if any(one.high < limit for one in known):
-        return NOT_REPRODUCED
-    return REPRODUCED if known and all(one.low > limit for one in known) else UNDECIDED
-
-
-def all_below(values: dict[str, Estimate], limit: float) -> str:
-    """The other way round."""
-    mirrored = {
-        name: Estimate(-one.mean, -one.high, -one.low, one.packings) for name, one in values.items()
-    }
-    return all_above(mirrored, -limit)
 
 
 def _curve_table(found: Found, engines: list[str]) -> pd.DataFrame:

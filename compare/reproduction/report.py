@@ -14,8 +14,9 @@ from rich.text import Text
 import pandas as pd
 
 from crossdem.adapters.files import write_whole
+from crossdem.adapters.gates import REFERENCE
 
-from ..drawing import INK, png_figure, svg_figure
+from ..drawing import png_figure, svg_figure, svg_file
 from ..pages import render, write_record
 from ..provenance import provenance
 from ..record import libraries
@@ -81,9 +82,9 @@ def headline(reproduction: Reproduction) -> str:
 
 def size_in_words(reproduction: Reproduction) -> str:
     size = reproduction.found.size
-    others = [engine for engine in size.engines if engine != "native"]
+    others = [engine for engine in size.engines if engine != REFERENCE]
     beside = f", {' and '.join(others)} {plural(size.of(others[0]), 'packing')}" if others else ""
-    return f"native {plural(size.seeds, 'packing')} of each setting{beside}"
+    return f"{REFERENCE} {plural(size.seeds, 'packing')} of each setting{beside}"
 
 
 def left_out(reproduction: Reproduction) -> list[tuple[str, str]]:
@@ -108,18 +109,11 @@ def sample_rows(reproduction: Reproduction) -> list[tuple[str, str, int]]:
 
 def _write_picture(picture: Picture, folder: Path) -> Markup:
     """NAME.svg, .png and .csv; the drawing for the page."""
-    drawing = svg_figure(picture.draw, picture.size_px)
-    alone = drawing.replace("currentColor", INK)
-    write_whole(folder / f"{picture.name}.svg", _standing_alone(alone).encode())
+    write_whole(folder / f"{picture.name}.svg", svg_file(picture.draw, picture.size_px))
     write_whole(folder / f"{picture.name}.png", png_figure(picture.draw, picture.size_px))
     if picture.table is not None:
         write_whole(folder / f"{picture.name}.csv", picture.table.to_csv(index=False).encode())
-    return Markup(drawing)
-
-
-def _standing_alone(svg: str) -> str:
-    """An <svg> element as a file of its own."""
-    return f'<?xml version="1.0" encoding="utf-8"?>\n{svg}'
+    return Markup(svg_figure(picture.draw, picture.size_px))
 
 
 def _manifests(reproduction: Reproduction) -> list[dict]:

@@ -14,18 +14,9 @@ from ..wording import number
 from .bed_pictures import draw_beds
 from .estimates import mean_of
 from .runs import Found
-from .study import (
-    NOT_REPRODUCED,
-    REPRODUCED,
-    UNDECIDED,
-    UNTESTABLE,
-    Claim,
-    Findings,
-    Picture,
-    Setting,
-)
+from .study import AS_PRINTED, UNTESTABLE, Claim, Findings, Picture, Setting
+from .verdicts import all_above
 
-AS_PRINTED = Setting("as the paper has it", engines=True)
 TIMES_S = (1.0, 3.0, 5.0, 7.0, 9.0)
 MM = 1000.0
 MOVEMENT = "near_bar_movement_m"
@@ -38,13 +29,6 @@ def settings(case: Case) -> list[Setting]:
 def findings(found: Found) -> Findings:
     engines = found.engines_of(AS_PRINTED)
     movements = {engine: mean_of(found.of(AS_PRINTED, engine)[MOVEMENT]) for engine in engines}
-    known = [one for one in movements.values() if one.known]
-    if not known:
-        verdict = UNDECIDED
-    elif all(one.low > 0 for one in known):
-        verdict = REPRODUCED
-    else:
-        verdict = NOT_REPRODUCED if any(one.high < 0 for one in known) else UNDECIDED
     said = "; ".join(f"{engine} {one.shown(MM, 'mm')}" for engine, one in movements.items())
     near_mm = MM * found.case.resolved["marks"]["near_bar_m"]
     claims = (
@@ -52,7 +36,7 @@ def findings(found: Found) -> Findings:
             "sections 4.1, 4.2, Figs. 8 and 9",
             "Particles near the bar move down with it, as the soil did.",
             f"Those that start within {number(near_mm, 2)} mm of the bar's sides go down, by the end, by: {said}.",
-            verdict,
+            all_above(movements, 0.0),
             movements[engines[0]].shown(MM, "mm") if engines else "",
             "reproduced where the 95 % interval of the movement lies above 0 in every code",
         ),

@@ -28,6 +28,10 @@ class Setting:
     engines: bool = False
 
 
+AS_PRINTED = Setting("as the paper has it", engines=True)
+RESISTANCE = "mean_resistance_N"  # of the quantities, the one that most studies look at
+
+
 @dataclass(frozen=True)
 class Claim:
     """A statement of the paper that runs can test."""

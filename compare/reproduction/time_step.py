@@ -67,17 +67,15 @@ def _collision(collisions: Collisions) -> Claim:
         verdict = NOT_REPRODUCED
     else:
         verdict = CORRECTED if whole and whole < root() - collisions.spacing else REPRODUCED
-    said = (
-        f"the first step of a contact adds energy from {first:.4f} sqrt(m/k) on"
-        if first
-        else "the first step of a contact adds energy at none of these time steps"
-    )
-    later = (
-        f"as the step displacement is averaged and a contact may begin anywhere in a step, a whole collision can end with more "
-        f"energy than it began with from {whole:.2f} sqrt(m/k) on"
-        if whole
-        else "no whole collision ends with more energy than it began with"
-    )
+    said = "the first step of a contact adds energy at none of these time steps"
+    if first:
+        said = f"the first step of a contact adds energy from {first:.4f} sqrt(m/k) on"
+    later = "no whole collision ends with more energy than it began with"
+    if whole:
+        later = (
+            "as the step displacement is averaged and a contact may begin anywhere in a step, a whole collision can end with "
+            f"more energy than it began with from {whole:.2f} sqrt(m/k) on"
+        )
     return Claim(
         "section 2.7, Eqs (26) to (32)",
         "A disc that meets a wall gains no energy below that bound.",

@@ -23,6 +23,7 @@ from .study import (
     CORRECTED,
     NOT_REPRODUCED,
     REPRODUCED,
+    RESISTANCE,
     UNDECIDED,
     UNTESTABLE,
     Claim,
@@ -34,7 +35,7 @@ from .study import (
 COEFFICIENTS = (0.0, 0.25, 0.5, 0.75)  # Table 2, of both kinds
 PARTICLES = 0.75  # section 4.3, while the wall's varies
 LEVEL = 0.05
-MOVEMENT, BUMP, RESISTANCE = "near_bar_movement_m", "surface_bump_m", "mean_resistance_N"
+MOVEMENT, BUMP = "near_bar_movement_m", "surface_bump_m"
 
 
 def setting(particles: float, wall: float) -> Setting:

@@ -16,12 +16,7 @@ from test_report import Page
 from crossdem.adapters.case import varied
 from crossdem.adapters.workspace import Workspace
 from crossdem.compare.progress import ProgressDisplay
-from crossdem.compare.reproduction import (
-    estimates,
-    penetration_resistance,
-    time_step,
-    wall_friction,
-)
+from crossdem.compare.reproduction import estimates, time_step, wall_friction
 from crossdem.compare.reproduction.collisions import Collisions, collide
 from crossdem.compare.reproduction.estimates import Estimate
 from crossdem.compare.reproduction.runs import Size
@@ -34,6 +29,7 @@ from crossdem.compare.reproduction.study import (
     UNDECIDED,
     VERDICTS,
 )
+from crossdem.compare.reproduction.verdicts import all_above, all_below, raised_enough
 
 HOSTILE = '<script>alert(1)</script> "q" & 土のモデル'
 FIRST, SECOND = pd.Series([1.0, 1.2, 0.9, 1.4]), pd.Series([2.1, 1.7, 2.4])
@@ -148,12 +144,19 @@ def test_a_trend_is_reproduced_only_where_every_step_goes_up():
 
 def test_all_engines_must_lie_on_the_side_that_is_claimed():
     above, about, below = step(2.0, 0.5), step(1.0, 0.5), step(0.1, 0.2)
-    all_above = penetration_resistance.all_above
     assert all_above({"native": above, "yade": above}, 1.0) == REPRODUCED
     assert all_above({"native": above, "yade": about}, 1.0) == UNDECIDED
     assert all_above({"native": above, "yade": below}, 1.0) == NOT_REPRODUCED
     assert all_above({"native": Estimate(2.0, math.nan, math.nan, 1)}, 1.0) == UNDECIDED
-    assert penetration_resistance.all_below({"native": below}, 1.0) == REPRODUCED
+    assert all_below({"native": below}, 1.0) == REPRODUCED
+
+
+def test_a_rise_explains_a_low_resistance_only_beyond_the_factor_that_is_no_effect():
+    assert raised_enough(step(1.3, 0.1)) == REPRODUCED
+    assert raised_enough(step(1.05, 0.03)) == CORRECTED
+    assert raised_enough(step(1.0, 0.05)) == NOT_REPRODUCED
+    assert raised_enough(step(1.1, 0.05)) == UNDECIDED
+    assert raised_enough(Estimate(2.0, math.nan, math.nan, 1)) == UNDECIDED
 
 
 def test_other_engines_run_no_more_packings_than_there_are():
