@@ -17,6 +17,7 @@ from crossdem.adapters.workspace import Workspace
 
 from .progress import ProgressDisplay
 from .runs import cores
+from .wording import plural
 
 SEED = 1
 SETTLING = 3.0  # times the shortest settling at rest's cost, for the guess how long a bed takes
@@ -44,7 +45,7 @@ def bed(case: Case, workspace: Workspace, display: ProgressDisplay) -> Packing:
     steps = SETTLING * recipe["settling_s"] / recipe["step_s"]
     threads = cores()
     guess_s = get_engine(REFERENCE).cost_s * count * steps / threads
-    display.say(f"settling a bed ({count:,} particles): about {guess_s:.0f} s")
+    display.say(f"settling a bed of {plural(count, 'particle')}: about {guess_s:.0f} s")
     started = time.monotonic()
     packing = make_packing(case, SEED, folder, threads)
     wall_s = time.monotonic() - started

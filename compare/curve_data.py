@@ -11,7 +11,6 @@ from . import motion, resistance
 from .colours import engine_styles
 from .comparison import Comparison
 
-FINE_BIN_M = 0.001  # of the resistance: shows the fluctuation with few points
 ROUND_OFF = 6  # digits that count: the depths of two engines differ by round-off
 
 
@@ -52,7 +51,7 @@ def curve_tables(comparison: Comparison) -> dict[str, tuple[pd.DataFrame, str]]:
 def _resistance_N(comparison: Comparison, engine: str) -> list[pd.Series]:
     """Means of 1 mm of depth of the first run of each packing; of recorded packings per cm, mean of their twins."""
     profiles = [
-        resistance.resistance_profile(run.resistance, FINE_BIN_M)["mean_N"]
+        resistance.resistance_profile(run.resistance, resistance.FINE_BIN_M)["mean_N"]
         for run in comparison.of(engine)
     ] or [profile for _, profile in comparison.packings(engine).iterrows()]
     return [_curve(100 * profile.index, profile) for profile in profiles]

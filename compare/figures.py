@@ -18,7 +18,6 @@ from matplotlib.patches import Rectangle
 from . import motion, resistance
 from .colours import EngineStyle, engine_styles
 from .comparison import Comparison
-from .curve_data import FINE_BIN_M
 from .drawing import INK
 
 COLOUR_STEPS = 8
@@ -29,7 +28,7 @@ def draw_resistance(axes: Axes, comparison: Comparison) -> None:
     for engine, style in engine_styles(comparison.engines).items():
         packings = comparison.packings(engine)
         lines = [
-            resistance.resistance_profile(run.resistance, FINE_BIN_M)["mean_N"]
+            resistance.resistance_profile(run.resistance, resistance.FINE_BIN_M)["mean_N"]
             for run in comparison.of(engine)
         ] or [profile for _, profile in packings.iterrows()]
         faint = min(0.55, 4 / max(1, len(lines)))

@@ -12,6 +12,7 @@ from crossdem.adapters.dataset import Dataset
 
 # Share of the final depth at which the deep window starts: 3 of 9 cm, past the start-up of the bar.
 DEEP_FROM = 1 / 3
+FINE_BIN_M = 0.001  # of depth: bins that show the fluctuation with few points
 ROUND_OFF_M = 1e-9  # depths are multiples of the sample interval up to round-off
 
 

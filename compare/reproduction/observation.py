@@ -12,11 +12,10 @@ from crossdem.adapters.dataset import Dataset
 
 from .. import motion
 from ..quantities import QUANTITIES
-from ..resistance import resistance_profile
+from ..resistance import FINE_BIN_M, resistance_profile
 from ..variants import VariantRun
 from .spectrum import fluctuation_share, median_wavelength_m, spectrum
 
-FINE_M = 0.001  # of depth: bins that show the fluctuation with few points
 SHARE, WAVELENGTH = "fluctuation_share", "median_wavelength_m"  # beside the QUANTITIES
 
 
@@ -72,7 +71,7 @@ def observe(runs: Sequence[VariantRun], unsettled: Sequence[str] = ()) -> Sample
             restless.append(f"seed {seed}: {'; '.join(failed)}")
             continue
         sound.append(seed)
-        profiles[seed] = resistance_profile(table, FINE_M)["mean_N"]
+        profiles[seed] = resistance_profile(table, FINE_BIN_M)["mean_N"]
         spectra[seed] = spectrum(table)
         layers.append(layer_movement(dataset))
         folders[seed] = run.folder

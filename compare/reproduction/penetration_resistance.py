@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from crossdem.adapters.case import Case
 
 from ..colours import engine_styles
+from ..resistance import FINE_BIN_M
 from . import causes
 from .changes import change_picture
 from .estimates import mean_of
-from .observation import FINE_M, SHARE, WAVELENGTH
+from .observation import SHARE, WAVELENGTH
 from .runs import Found
 from .scaling import scaled
 from .study import AS_PRINTED, RESISTANCE, UNTESTABLE, Claim, Findings, Picture, Setting
@@ -87,7 +88,7 @@ def findings(found: Found) -> Findings:
         Picture(
             "fig11_resistance",
             "Fig. 11: resistance against depth",
-            f"Means of {1000 * FINE_M:g} mm. Thin: each packing; thick: their mean.",
+            f"Means of {1000 * FINE_BIN_M:g} mm. Thin: each packing; thick: their mean.",
             (900, 340),
             partial(_draw_curves, found, engines),
             _curve_table(found, engines),
