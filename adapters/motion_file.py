@@ -37,13 +37,7 @@ def write_motion(
 ) -> None:
     """Write `motion` of particles with radii (N,) in a container of `box_m` (width, height); doubles, uncompressed."""
     with h5py.File(path, "w") as file:
-        header = file.create_group("h5md")
-        header.attrs["version"] = np.array([1, 1])
-        header.create_group("author").attrs["name"] = "crossdem"
-        creator = header.create_group("creator")
-        creator.attrs["name"] = engine
-        creator.attrs["version"] = version
-
+        write_header(file, engine, version)
         soil = file.create_group("particles/soil")
         box = soil.create_group("box")
         box.attrs["dimension"] = 2
@@ -63,6 +57,16 @@ def write_motion(
         if motion.bar_tip_m is not None:
             bar = file.create_group("observables/bar")
             _write_element(bar, "tip", motion.bar_tip_m, "m", position)
+
+
+def write_header(file: h5py.File, engine: str, version: str) -> None:
+    """Who made an H5MD file, and of which version of the format it is."""
+    header = file.create_group("h5md")
+    header.attrs["version"] = np.array([1, 1])
+    header.create_group("author").attrs["name"] = "crossdem"
+    creator = header.create_group("creator")
+    creator.attrs["name"] = engine
+    creator.attrs["version"] = version
 
 
 def read_motion(path: Path) -> tuple[Motion, np.ndarray]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.files import write_whole
+from crossdem.adapters.motion_file import write_header
 
 from . import motion
 
@@ -54,12 +55,7 @@ def write_h5md(dataset: Dataset, path: Path) -> Path:
     partial = path.with_name(f".{path.name}.partial")
     case, run = dataset.case, dataset.motion
     with h5py.File(partial, "w") as file:
-        header = file.create_group("h5md")
-        header.attrs["version"] = np.array([1, 1])
-        header.create_group("author").attrs["name"] = "crossdem"
-        creator = header.create_group("creator")
-        creator.attrs["name"] = dataset.engine
-        creator.attrs["version"] = dataset.manifest["engine_version"]
+        write_header(file, dataset.engine, dataset.manifest["engine_version"])
         soil = file.create_group("particles/soil")
         box = soil.create_group("box")
         box.attrs["dimension"] = 3
