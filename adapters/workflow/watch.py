@@ -13,6 +13,8 @@ from ..engines import get_engine
 from ..process import LineCounter
 from .plan import STATUS, PlannedRun
 
+EARLY = 0.2  # share of a run's samples before which its own pace says little: it begins with a rest that has none
+
 
 @dataclass(frozen=True)
 class Progress:
@@ -75,7 +77,7 @@ class Watch:
         last = [
             (now - self._seen[working[name]][0]) * (1 - share) / share
             for name, share in shares.items()
-            if share > 0
+            if share > EARLY
         ]
         return max([even, *last])
 

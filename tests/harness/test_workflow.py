@@ -14,15 +14,17 @@ import pytest
 from rich.console import Console
 from small_case import small_case
 
-from crossdem.adapters.attempt import Attempt, clear_away, machine
+from crossdem.adapters.attempt import WORK, Attempt, clear_away, machine
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.engines import get_engine
 from crossdem.adapters.one_run import Limits, Run
 from crossdem.adapters.packing import make_packing, make_twin
 from crossdem.adapters.run import RunRequest, look_up
 from crossdem.adapters.solver import BEYOND_REASON
 from crossdem.adapters.workflow.ensemble import run_ensemble
 from crossdem.adapters.workflow.snakemake import WorkflowError
-from crossdem.adapters.workflow.watch import Progress
+from crossdem.adapters.workflow.plan import PlannedRun
+from crossdem.adapters.workflow.watch import Progress, Watch
 from crossdem.compare.progress import ProgressDisplay
 
 
@@ -65,6 +67,25 @@ def calls(out):
 
 def names_in(folder):
     return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_run_that_has_just_begun_does_not_say_when_all_are_done(
+    case, packings, tmp_path, monkeypatch
+):
+    names = ("native-seed1-000000000000", "native-seed2-000000000000")
+    request = RunRequest(case, packings[0], "native")
+    watch = Watch([PlannedRun(request, tmp_path, name, name, 10.0) for name in names], tmp_path)
+    done = tmp_path / "runs" / names[0]
+    works = tmp_path / "runs" / f".{names[1]}@machine-1-1-00000000.{WORK}"
+    samples = works / get_engine("native").samples_file
+    samples.parent.mkdir(parents=True)
+    now = time.monotonic()
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    watch.look()
+    done.mkdir()
+    samples.write_text("a header\n")
+    now += 10.0
+    assert watch.look().seconds_left == pytest.approx(10.0, rel=0.2)
 
 
 def test_every_run_becomes_a_dataset_and_is_run_into_once(case, packings, out):
