@@ -4,22 +4,9 @@
 # SOLVER (g++ -O3 in a release build), and compares what they wrote, bit for bit.
 set -euo pipefail
 own_solver=$1 source_dir=$2 work_dir=$3
-small_bed=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/small_bed.json
+source "$(dirname "${BASH_SOURCE[0]}")/write_and_hash.sh"
 rm -rf "$work_dir"
 mkdir -p "$work_dir"
-
-# hash_results NAME SOLVER: what this solver writes, as hashes in NAME.sha256
-hash_results() {
-  local results=$work_dir/$1
-  mkdir -p "$results"
-  "$2" pack "$small_bed" --seed 1 --output "$results/packing"
-  for scheme in paper liggghts yade liggghts_averaged yade_averaged; do
-    sed "s/\"schema_version\": 1/&, \"scheme\": {\"name\": \"$scheme\"}/" "$small_bed" >"$results/$scheme.json"
-    "$2" resolve "$results/$scheme.json" | grep -q "\"name\":\"$scheme\""
-    "$2" run "$results/$scheme.json" --packing "$results/packing/packing.csv" --output "$results/$scheme"
-  done
-  (cd "$results" && sha256sum packing/* */resistance.csv */ledger.csv) >"$work_dir/$1.sha256"
-}
 
 # compile_and_hash NAME COMPILER FLAGS
 compile_and_hash() {
@@ -27,13 +14,13 @@ compile_and_hash() {
   cmake -S "$source_dir" -B "$build" -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER="$2" \
     -DCMAKE_CXX_FLAGS="$3" >"$build.log"
   cmake --build "$build" --target crossdem-solver >>"$build.log" 2>&1 || { cat "$build.log" >&2 && return 1; }
-  hash_results "$1" "$build/solver/crossdem-solver"
+  hash_results "$work_dir/$1" "$build/solver/crossdem-solver"
 }
 
 compile_and_hash g++_-O0 g++ -O0 &
 compile_and_hash clang++_-O2 clang++ -O2
 wait $!
-hash_results this_build "$own_solver"
+hash_results "$work_dir/this_build" "$own_solver"
 "$own_solver" --version
 for name in g++_-O0 clang++_-O2; do
   diff "$work_dir/this_build.sha256" "$work_dir/$name.sha256" || { echo "this build and $name differ" >&2 && exit 1; }
