@@ -36,7 +36,14 @@ from .viewer import viewer_data
 
 WIDE_PX, NARROW_PX, PANEL_PX = (900, 400), (380, 320), (440, 320)
 FIELD_PX = (400, 460)
-ASSETS = ("uPlot.min.css", "uPlot.iife.min.js", "viewer.js", "curves.js", "filter.js")
+ASSETS = (
+    "uPlot.min.css",
+    "uPlot.iife.min.js",
+    "overlaps.js",
+    "viewer.js",
+    "curves.js",
+    "filter.js",
+)
 SECTIONS = {
     "beds": "Motion",
     "resistance": "Resistance",

@@ -34,6 +34,7 @@ def viewer_data(runs: dict[str, Dataset]) -> dict | None:
         "width_m": case["container"]["width_m"],
         "height_m": case["container"]["height_m"],
         "bar": {key: case["bar"][key] for key in ("centre_x_m", "width_m", "length_m")},
+        "normal_stiffness_N_m": case["contact"]["particle_particle"]["normal_stiffness_N_m"],
         "layer_colours": LAYERS,
         "runs": [
             {"engine": engine, "colour": styles[engine].colour} | _packed_run(run, most_frames)

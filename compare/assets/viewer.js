@@ -89,6 +89,21 @@
     colouring.top = sorted[Math.floor(0.99 * (sorted.length - 1))] || 1e-9;
   }
 
+  // Force chains: the springs between discs that overlap, the thicker the more.
+  const THICKNESSES = 8;
+  const places = (run, name, frame) => Float32Array.from(run.radius_m, (_, i) => at(run, name, i, frame));
+  const overlaps = (run, frame, visit) => {
+    const [x, y] = [places(run, "x", frame), places(run, "y", frame)];
+    visitOverlaps(x, y, run.radius_m, (i, j, overlap) => visit(overlap, x[i], y[i], x[j], y[j]));
+  };
+  let thickest_m; // overlap; 99 of 100 are less
+  function measureOverlaps() {
+    const found = [];
+    for (const run of data.runs)
+      for (let frame = 0; frame < run.time_s.length; frame += 10) overlaps(run, frame, (overlap) => found.push(overlap));
+    thickest_m = Float64Array.from(found).sort()[Math.floor(0.99 * (found.length - 1))] || 1e-9;
+  }
+
   // Controls
   const play = element("button", { type: "button", id: "viewer-play", textContent: "Play" });
   const slider = element("input", { type: "range", id: "viewer-time", min: 0, max: last, step: 1, value: 0 });
@@ -97,11 +112,13 @@
   const choice = element("select", { id: "viewer-colour" });
   for (const [name, { title }] of Object.entries(colourings)) choice.append(element("option", { value: name, textContent: title }));
   const number = element("input", { type: "number", id: "viewer-particle", min: 0, max: first.radius_m.length - 1, placeholder: "none" });
+  const forces = element("input", { type: "checkbox", id: "viewer-forces" });
   const scale = element("div", { className: "scale" });
   const beds = element("div", { className: "viewer-beds" });
   holder.append(
     element("div", { className: "controls" }, play, slider, clock,
-      element("label", {}, "colour by ", choice), element("label", {}, "particle ", number)),
+      element("label", {}, "colour by ", choice), element("label", {}, forces, " force chains"),
+      element("label", {}, "particle ", number)),
     scale, beds);
 
   const aspect = data.height_m / data.width_m;
@@ -147,15 +164,29 @@
       pen.arc(across(at(run, "x", i, here)), down(at(run, "y", i, here)), share * scale * run.radius_m[i], 0, 2 * Math.PI);
     };
     pen.clearRect(0, 0, canvas.width, canvas.height);
+    pen.globalAlpha = forces.checked ? 0.45 : 1;
     for (let i = 0; i < run.radius_m.length; i++) {
       pen.fillStyle = colourOf(run, i, here);
       circle(i, 0.93); // a little small, to be told apart
       pen.fill(); // one by one: a path of many circles takes longer
     }
+    pen.globalAlpha = 1;
+    pen.strokeStyle = colours.ink;
+    if (forces.checked) {
+      const lines = Array.from({ length: THICKNESSES }, () => new Path2D());
+      overlaps(run, here, (overlap, x, y, other_x, other_y) => {
+        const line = lines[Math.min(Math.floor((THICKNESSES * overlap) / thickest_m), THICKNESSES - 1)];
+        line.moveTo(across(x), down(y));
+        line.lineTo(across(other_x), down(other_y));
+      });
+      lines.forEach((line, number) => {
+        pen.lineWidth = ((number + 0.5) / THICKNESSES) * 0.7 * scale * run.radius_m[0];
+        pen.stroke(line);
+      });
+    }
     const { centre_x_m, width_m, length_m } = data.bar;
     pen.fillStyle = colours.bar;
     pen.fillRect(across(centre_x_m - width_m / 2), down(between(run.bar_tip_m, here) + length_m), scale * width_m, scale * length_m);
-    pen.strokeStyle = colours.ink;
     pen.lineWidth = 2;
     pen.strokeRect(0, -2, canvas.width, canvas.height + 2);
     if (chosen !== null && chosen < run.radius_m.length) {
@@ -186,6 +217,11 @@
     const colouring = colourings[choice.value];
     scaleOf(colouring);
     scale.replaceChildren();
+    if (forces.checked) {
+      if (thickest_m === undefined) measureOverlaps();
+      const thickest_mN = 1000 * data.normal_stiffness_N_m * thickest_m;
+      scale.append(element("span", { textContent: `lines: stiffness × overlap, the thickest ${shown(thickest_mN)} mN and more` }));
+    }
     if (!colouring.value) return;
     const strip = element("span", { className: "strip" });
     const stops = colouring.signed ? SIGNED : GROWING;
@@ -234,7 +270,7 @@
     frame = Number(slider.value);
     draw();
   });
-  choice.addEventListener("change", () => { drawScale(); draw(); });
+  for (const control of [choice, forces]) control.addEventListener("change", () => { drawScale(); draw(); });
   number.addEventListener("input", () => {
     chosen = number.value === "" ? null : Math.min(Math.max(Math.round(number.value), 0), first.radius_m.length - 1);
     draw();

@@ -72,12 +72,35 @@ async function useViewer(page) {
     await page.selectOption("#viewer-colour", name);
     seen.colourings[name] = [await picture(page, 1), await page.textContent("#viewer .scale")];
   }
+  await page.selectOption("#viewer-colour", "layer");
+  const without = await picture(page);
+  await page.focus("#viewer-forces");
+  await page.keyboard.press("Space");
+  seen.forces = { drawn: (await picture(page)) !== without, scale: await page.textContent("#viewer .scale") };
+  await page.keyboard.press("Space");
+  seen.forces.gone = (await picture(page)) === without;
   await page.locator("#viewer canvas").first().scrollIntoViewIfNeeded();
   const bed = await page.locator("#viewer canvas").first().boundingBox();
   await page.mouse.move(bed.x + 0.1 * bed.width, bed.y + 0.95 * bed.height);
   await page.mouse.move(bed.x + 0.3 * bed.width, bed.y + 0.85 * bed.height, { steps: 20 }); // between particles, too
   seen.said = await page.locator("#viewer .said").allTextContents();
 }
+
+// Pairs of random discs that overlap: as the page finds them, and by looking at each pair.
+const overlaps = (page) => page.evaluate(() => {
+  const random = () => Array.from({ length: 400 }, () => Math.random() - 0.3);
+  const [x, y, radius] = [random(), random(), random().map((value) => 0.01 + 0.02 * Math.abs(value))];
+  const found = [];
+  visitOverlaps(x, y, radius, (i, j, overlap) => found.push([i, j, overlap]));
+  const expected = [];
+  for (let j = 0; j < x.length; j++)
+    for (let i = 0; i < j; i++) {
+      const overlap = radius[i] + radius[j] - Math.hypot(x[i] - x[j], y[i] - y[j]);
+      if (overlap > 0) expected.push([i, j, overlap]);
+    }
+  const sorted = (pairs) => pairs.sort((a, b) => a[1] - b[1] || a[0] - b[0]);
+  return [sorted(found), sorted(expected)];
+});
 
 async function useCurves(page) {
   const holder = page.locator('[data-curves="resistance"]');
@@ -116,6 +139,7 @@ async function useFilter(page) {
 
 const page = await open({ viewport: { width: 1280, height: 900 } });
 await useViewer(page);
+seen.overlaps = await overlaps(page);
 await useCurves(page);
 await useFilter(page);
 await page.emulateMedia({ media: "print" });

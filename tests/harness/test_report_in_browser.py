@@ -166,6 +166,15 @@ def test_each_colouring_shows_another_picture_and_its_scale(used):
     assert "mm/s" in used["colourings"]["speed"][1]
 
 
+def test_force_chains_are_drawn_where_discs_overlap_and_can_be_taken_away(used):
+    found, expected = used["overlaps"]
+    assert len(found) > 100
+    assert [pair[:2] for pair in found] == [pair[:2] for pair in expected]
+    assert [pair[2] for pair in found] == pytest.approx([pair[2] for pair in expected])
+    assert used["forces"]["drawn"] and used["forces"]["gone"]
+    assert "mN" in used["forces"]["scale"]
+
+
 def test_pointing_at_a_particle_says_its_values_in_every_bed(used):
     particles = {text.split(";")[0] for text in used["said"]}
     assert len(used["said"]) == 3 and len(particles) == 1
