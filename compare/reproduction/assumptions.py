@@ -12,7 +12,8 @@ from .runs import Found
 from .study import AS_PRINTED, Findings, Setting
 
 LARGER_SHARES = (0.3, 0.7)  # of the larger discs, by number
-LOOSE = 0.77  # share of a bed's area that discs fill, less than any settled bed has: so high lies no particle
+LOOSE = 0.77  # share of a bed's area that discs fill, less than any settled bed has
+ROUGH = 2  # of the largest diameters: so high above its mean height a bed has no particle
 
 
 def settings(case: Case) -> list[Setting]:
@@ -50,5 +51,7 @@ def _higher_start(case: Case) -> Setting:
         particles["count"] * share * math.pi / 4 * diameter_m**2
         for diameter_m, share in zip(particles["diameters_m"], particles["number_shares"])
     )
-    tip_m = round(area_m2 / (LOOSE * case.resolved["container"]["width_m"]), 4)
-    return Setting("bar starts above the bed", (f"bar.tip_m={tip_m!r}",))
+    height_m = area_m2 / (LOOSE * case.resolved["container"]["width_m"])
+    tip_m = round(height_m + ROUGH * max(particles["diameters_m"]), 4)
+    overrides = (f"bar.tip_m={tip_m!r}",)
+    return Setting(f"bar starts {100 * tip_m:.1f} cm high", overrides, bed=overrides)

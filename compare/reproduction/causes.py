@@ -5,52 +5,49 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .changes import ratios
-from .observation import SHARE
+from .observation import FLUCTUATION, SHARE
 from .runs import Found
 from .study import RESISTANCE, Claim, Setting
-from .verdicts import NO_EFFECT, all_below, raised_enough
+from .verdicts import NO_EFFECT, lowered, raised
 
 SECTION = "section 4.4"
 
 
 def of_fluctuation(
-    found: Found,
-    settings: Sequence[Setting],
-    says: str,
-    how: str,
-    also: tuple[str, str],
-    why: str,
+    found: Found, settings: Sequence[Setting], says: str, how: str, farthest: str
 ) -> Claim:
-    """`settings` lack the reason: less of it from each to the next. `also`: another quantity, and what it is called."""
+    """`settings` lack the reason, each more than the one before; the last tells, and `farthest` calls it by its name."""
     shares = ratios(found, SHARE, settings)
-    others = ratios(found, also[0], settings)
-    changes = "; ".join(
-        f"{name} {share.as_change()}, {also[1]} {others[name].as_change()}"
+    forces = ratios(found, FLUCTUATION, settings)
+    last = settings[-1].name
+    said = "; ".join(
+        f"{name} {share.as_change()}, in newtons {forces[name].as_change()}"
         for name, share in shares.items()
     )
     return Claim(
         SECTION,
         says,
-        f"{how}: {changes}.",
-        all_below(shares, 1.0),
-        list(shares.values())[-1].as_change(),
-        f"reproduced where {why}, each interval below no change",
+        f"{how}, as a share of the resistance: {said}.",
+        lowered(shares[last], forces[last]),
+        shares[last].as_change(),
+        f"reproduced where {farthest} fluctuate less, both as a share of the resistance and in newtons, the interval below no "
+        "change; with a correction where only the share is less",
     )
 
 
 def of_low_resistance(
     found: Found, settings: Sequence[Setting], says: str, how: str, farthest: str
 ) -> Claim:
-    """As above; the last of `settings` tells, and `farthest` calls it by its name."""
+    """As above."""
     changes = ratios(found, RESISTANCE, settings)
-    last = list(changes.values())[-1]
+    last = changes[settings[-1].name]
     said = "; ".join(f"{name} {ratio.as_change()}" for name, ratio in changes.items())
     return Claim(
         SECTION,
         says,
         f"{how}: {said}.",
-        raised_enough(last),
+        raised(last),
         last.as_change(),
-        f"reproduced where {farthest} the resistance by more than {100 * (NO_EFFECT - 1):.0f} %; not where the interval lies "
-        "below that; with a correction where it is raised, but by less",
+        f"reproduced where {farthest} the resistance, the interval above no change; with a correction where that is by less than "
+        f"{100 * (NO_EFFECT - 1):.0f} %",
     )

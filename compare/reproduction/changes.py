@@ -11,12 +11,13 @@ from matplotlib.figure import Figure
 from ..drawing import INK
 from ..quantities import QUANTITIES
 from .estimates import Estimate, ratio_of
-from .observation import SHARE, WAVELENGTH
+from .observation import FLUCTUATION, SHARE, WAVELENGTH
 from .runs import Found
 from .study import AS_PRINTED, RESISTANCE, Picture, Setting
 
 SHOWN = {
     RESISTANCE: QUANTITIES[RESISTANCE].title,
+    FLUCTUATION: QUANTITIES[FLUCTUATION].title,
     SHARE: "fluctuation over resistance",
     WAVELENGTH: "median wavelength",
     "near_bar_movement_m": QUANTITIES["near_bar_movement_m"].title,
@@ -40,7 +41,10 @@ def change_picture(
         for setting, ratio in ratios(found, quantity, settings).items()
     ]
     table = pd.DataFrame(rows).rename(columns={"mean": "ratio"})
-    drawn = f"Native: ratio to the case as the paper has it, and its 95 % interval. {says}".rstrip()
+    drawn = (
+        "Native: ratio to the case as the paper has it, and its 95 % interval; no point where a mean is not above 0, such as "
+        f"of particles that move up. {says}"
+    ).rstrip()
     size_px = (960, 90 + 34 * len(settings))
     return Picture(name, title, drawn, size_px, partial(_draw, table), table)
 

@@ -8,6 +8,7 @@ from crossdem.adapters.case import Case
 
 from .estimates import mean_of, ratio_of
 from .observation import SHARE
+from .penetration_resistance import on_springs
 from .runs import Found
 from .scaling import scaled
 from .study import (
@@ -34,11 +35,12 @@ def alumina(case: Case) -> Setting:
 
 
 def settings(case: Case) -> list[Setting]:
-    return [AS_PRINTED, alumina(case)]
+    return [AS_PRINTED, alumina(case), on_springs(case, STIFFNESS)]
 
 
 def findings(found: Found) -> Findings:
     soil, balls = found.of(AS_PRINTED), found.of(alumina(found.case))
+    as_stiff = ratio_of(balls[SHARE], found.of(on_springs(found.case, STIFFNESS))[SHARE])
     share = ratio_of(balls[SHARE], soil[SHARE])
     resistance = ratio_of(balls[RESISTANCE], soil[RESISTANCE])
     density = DENSITY_KG_M3 / found.case.resolved["particles"]["density_kg_m3"]
@@ -50,7 +52,8 @@ def findings(found: Found) -> Findings:
                 "Hard balls fluctuate as the simulated soil does.",
                 f"Simulated with the density of alumina, {DENSITY_KG_M3:g} kg/m³, and springs {STIFFNESS:g} times as stiff, "
                 f"the fluctuation is {mean_of(balls[SHARE]).shown(100, '%')} of the resistance, of the soil's discs "
-                f"{mean_of(soil[SHARE]).shown(100, '%')}: {share.as_change()}.",
+                f"{mean_of(soil[SHARE]).shown(100, '%')}: {share.as_change()}. Beside the soil's discs on springs as stiff it is "
+                f"{as_stiff.as_change()}.",
                 _alike(share.low, share.high),
                 share.as_change(),
                 f"alike is taken for an interval of the ratio within 1/{ALIKE:g} to {ALIKE:g}",

@@ -16,7 +16,8 @@ from ..resistance import FINE_BIN_M, resistance_profile
 from ..variants import VariantRun
 from .spectrum import fluctuation_share, median_wavelength_m, spectrum
 
-SHARE, WAVELENGTH = "fluctuation_share", "median_wavelength_m"  # beside the QUANTITIES
+FLUCTUATION = "fluctuation_N"  # of the QUANTITIES
+SHARE, WAVELENGTH = "fluctuation_share", "median_wavelength_m"  # beside them
 
 
 @dataclass(frozen=True)

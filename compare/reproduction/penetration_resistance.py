@@ -13,7 +13,7 @@ from crossdem.adapters.case import Case
 from ..colours import engine_styles
 from ..resistance import FINE_BIN_M
 from . import causes
-from .changes import change_picture
+from .changes import change_picture, ratios
 from .estimates import mean_of
 from .observation import SHARE, WAVELENGTH
 from .runs import Found
@@ -33,23 +33,36 @@ def settings(case: Case) -> list[Setting]:
 
 
 def finer(case: Case) -> list[Setting]:
-    return [_of_discs(f"diameters / {parts}", scaled(case, size=1 / parts)) for parts in FINER]
+    rest_s = case.resolved["time"]["rest_s"]  # finer beds take longer
+    return [
+        _of_beds(
+            f"diameters / {parts}",
+            scaled(case, size=1 / parts),
+            (f"time.rest_s={parts / FINER[0] * rest_s!r}",),
+        )
+        for parts in FINER
+    ]
 
 
 def stiffer(case: Case) -> list[Setting]:
-    return [_of_discs(f"springs × {times}", scaled(case, stiffness=times)) for times in STIFFER]
+    return [on_springs(case, times) for times in STIFFER]
+
+
+def on_springs(case: Case, times: float) -> Setting:
+    """As stiff as that, and the time step that goes with them."""
+    return _of_beds(f"springs × {times:g}", scaled(case, stiffness=times))
 
 
 def wider(case: Case) -> list[Setting]:
     width_m = case.resolved["bar"]["width_m"]
     return [
-        Setting(f"bar of {100 * times * width_m:g} cm", (f"bar.width_m={times * width_m!r}",))
+        _of_beds(f"bar of {100 * times * width_m:g} cm", (f"bar.width_m={times * width_m!r}",))
         for times in WIDER
     ]
 
 
-def _of_discs(name: str, overrides: tuple[str, ...]) -> Setting:
-    return Setting(name, overrides, bed=overrides)
+def _of_beds(name: str, bed: tuple[str, ...], beside: tuple[str, ...] = ()) -> Setting:
+    return Setting(name, bed + beside, bed)
 
 
 def findings(found: Found) -> Findings:
@@ -63,9 +76,8 @@ def findings(found: Found) -> Findings:
             found,
             finer(case),
             "The discs are large: that is one reason for the fluctuation.",
-            "The fluctuation as a share of the resistance changes with the discs' diameters",
-            (WAVELENGTH, "its median wavelength"),
-            "smaller discs fluctuate less",
+            "With the discs' diameters the fluctuation changes",
+            f"discs of 1/{FINER[-1]} of the diameters",
         ),
         causes.of_low_resistance(
             found,
@@ -80,10 +92,11 @@ def findings(found: Found) -> Findings:
             f"Simulated, over the deepest two thirds of the way: {mean_of(found.of(AS_PRINTED)[RESISTANCE]).shown(unit='N')}.",
             UNTESTABLE,
             "",
-            "the measured curve is lost with the scans, and with it the width of the bar, to which the resistance is about "
-            "in proportion",
+            "the measured curve is lost with the scans, and with it the width of the bar, which changes the resistance by "
+            f"{_effect_of_width(found)}",
         ),
     )
+    of_sizes = [AS_PRINTED, *finer(case)]
     pictures = (
         Picture(
             "fig11_resistance",
@@ -97,14 +110,19 @@ def findings(found: Found) -> Findings:
             "fig11_spectrum",
             "Spectrum of the fluctuation",
             "Power spectral density of the resistance about its trend, mean of the packings, native; the mean diameter "
-            "of the discs is marked.",
+            f"of the discs is marked. Half of the variance lies in longer waves than: {_wavelengths(found, of_sizes)}.",
             (900, 340),
-            partial(_draw_spectra, found, [AS_PRINTED, *finer(case)]),
-            _spectrum_table(found, [AS_PRINTED, *finer(case)]),
+            partial(_draw_spectra, found, of_sizes),
+            _spectrum_table(found, of_sizes),
         ),
         change_picture("fig11_causes", "What discs, springs and bar change", "", found, varied),
     )
     return Findings("Resistance: Fig. 11", claims, pictures)
+
+
+def _effect_of_width(found: Found) -> str:
+    changes = ratios(found, RESISTANCE, wider(found.case))
+    return ", ".join(f"{change.as_change()} for a {name}" for name, change in changes.items())
 
 
 def _growth(found: Found, engines: list[str]) -> Claim:
@@ -123,12 +141,10 @@ def _growth(found: Found, engines: list[str]) -> Claim:
 def _fluctuation(found: Found, engines: list[str]) -> Claim:
     shares = {engine: mean_of(found.of(AS_PRINTED, engine)[SHARE]) for engine in engines}
     said = "; ".join(f"{engine} {one.shown(100, '%')}" for engine, one in shares.items())
-    wavelength = mean_of(found.of(AS_PRINTED)[WAVELENGTH])
     return Claim(
         "section 4.4, Fig. 11",
         "The simulated resistance fluctuates considerably.",
-        f"Standard deviation about its trend, as a share of its mean: {said}. Half of the variance lies in wavelengths of "
-        f"more than {wavelength.shown(1000, 'mm')} of depth.",
+        f"Standard deviation about its trend, as a share of its mean: {said}.",
         all_above(shares, CONSIDERABLE),
         shares[engines[0]].shown(100, "%") if engines else "",
         f"considerable is taken for more than {100 * CONSIDERABLE:g} % of the mean",
@@ -163,6 +179,12 @@ def _draw_curves(found: Found, engines: list[str], figure: Figure) -> None:
         )
     panel.set(xlabel="depth of the tip, cm", ylabel="resistance, N", xlim=(0, None), ylim=(0, None))
     panel.legend()
+
+
+def _wavelengths(found: Found, settings: list[Setting]) -> str:
+    return "; ".join(
+        f"{one.name} {mean_of(found.of(one)[WAVELENGTH]).shown(1000, 'mm')}" for one in settings
+    )
 
 
 def _spectrum_table(found: Found, settings: list[Setting]) -> pd.DataFrame:

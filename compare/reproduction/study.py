@@ -16,9 +16,20 @@ UNDECIDED = "not decided by these runs"  # an interval too wide, or no run at al
 VERDICTS = (REPRODUCED, CORRECTED, NOT_REPRODUCED, UNTESTABLE, UNDECIDED)
 
 
+IN_A_PACKING = (
+    "bar.",
+    "container.",
+    "packing.",
+    "particles.",
+)  # what a packing is made by, where the bar starts among it
+
+
 @dataclass(frozen=True)
 class Setting:
-    """The case with some values changed, in the native solver and, where `engines`, in the others too."""
+    """The case with some values changed, in the native solver and, where `engines`, in the others too.
+
+    Raises ValueError where its beds would be made for another bar, container or particles than it has.
+    """
 
     name: str  # as people read it, and the only one of that name
     overrides: tuple[str, ...] = ()
@@ -26,6 +37,12 @@ class Setting:
         str, ...
     ] = ()  # those of `overrides` under which its beds settle; none: the beds of the case itself
     engines: bool = False
+
+    def __post_init__(self) -> None:
+        if astray := [
+            one for one in self.overrides if one.startswith(IN_A_PACKING) and one not in self.bed
+        ]:
+            raise ValueError(f"{self.name}: its beds know nothing of {', '.join(astray)}")
 
 
 AS_PRINTED = Setting("as the paper has it", engines=True)

@@ -16,20 +16,20 @@ def all_above(values: dict[str, Estimate], limit: float) -> str:
     return REPRODUCED if known and all(one.low > limit for one in known) else UNDECIDED
 
 
-def all_below(values: dict[str, Estimate], limit: float) -> str:
-    """The other way round."""
-    mirrored = {
-        name: Estimate(-one.mean, -one.high, -one.low, one.packings) for name, one in values.items()
-    }
-    return all_above(mirrored, -limit)
-
-
-def raised_enough(ratio: Estimate) -> str:
-    """Whether a change of the resistance by `ratio` explains that it was too low: more than NO_EFFECT, or not."""
+def raised(ratio: Estimate) -> str:
+    """Whether the resistance rises by `ratio`: with a correction where that is by too little to explain anything."""
     if not ratio.known:
         return UNDECIDED
-    if ratio.low > NO_EFFECT:
-        return REPRODUCED
-    if ratio.high < NO_EFFECT:
-        return CORRECTED if ratio.low > 1.0 else NOT_REPRODUCED
-    return UNDECIDED
+    if ratio.low > 1.0:
+        return CORRECTED if ratio.high < NO_EFFECT else REPRODUCED
+    return NOT_REPRODUCED if ratio.high < NO_EFFECT else UNDECIDED
+
+
+def lowered(share: Estimate, force: Estimate) -> str:
+    """Whether the fluctuation falls: by `share` of the resistance, and by `force` in newtons; with a correction where only
+    the former does."""
+    if not share.known or not force.known or share.low < 1.0 < share.high:
+        return UNDECIDED
+    if share.low >= 1.0:
+        return NOT_REPRODUCED
+    return REPRODUCED if force.high < 1.0 else CORRECTED if force.low > 1.0 else UNDECIDED

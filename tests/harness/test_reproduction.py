@@ -28,8 +28,9 @@ from crossdem.compare.reproduction.study import (
     REPRODUCED,
     UNDECIDED,
     VERDICTS,
+    Setting,
 )
-from crossdem.compare.reproduction.verdicts import all_above, all_below, raised_enough
+from crossdem.compare.reproduction.verdicts import all_above, lowered, raised
 
 HOSTILE = '<script>alert(1)</script> "q" & 土のモデル'
 FIRST, SECOND = pd.Series([1.0, 1.2, 0.9, 1.4]), pd.Series([2.1, 1.7, 2.4])
@@ -148,15 +149,27 @@ def test_all_engines_must_lie_on_the_side_that_is_claimed():
     assert all_above({"native": above, "yade": about}, 1.0) == UNDECIDED
     assert all_above({"native": above, "yade": below}, 1.0) == NOT_REPRODUCED
     assert all_above({"native": Estimate(2.0, math.nan, math.nan, 1)}, 1.0) == UNDECIDED
-    assert all_below({"native": below}, 1.0) == REPRODUCED
 
 
-def test_a_rise_explains_a_low_resistance_only_beyond_the_factor_that_is_no_effect():
-    assert raised_enough(step(1.3, 0.1)) == REPRODUCED
-    assert raised_enough(step(1.05, 0.03)) == CORRECTED
-    assert raised_enough(step(1.0, 0.05)) == NOT_REPRODUCED
-    assert raised_enough(step(1.1, 0.05)) == UNDECIDED
-    assert raised_enough(Estimate(2.0, math.nan, math.nan, 1)) == UNDECIDED
+def test_a_resistance_is_raised_where_the_interval_lies_above_no_change():
+    assert raised(step(1.3, 0.1)) == raised(step(1.15, 0.07)) == REPRODUCED
+    assert raised(step(1.05, 0.03)) == CORRECTED
+    assert raised(step(1.0, 0.05)) == NOT_REPRODUCED
+    assert raised(step(1.1, 0.15)) == raised(Estimate(2.0, math.nan, math.nan, 1)) == UNDECIDED
+
+
+def test_a_fluctuation_is_lowered_without_correction_only_where_it_is_so_in_newtons():
+    less, same, more = step(0.6, 0.1), step(1.0, 0.1), step(1.4, 0.1)
+    assert lowered(less, less) == REPRODUCED
+    assert lowered(less, more) == CORRECTED
+    assert lowered(more, more) == NOT_REPRODUCED
+    assert lowered(less, same) == lowered(same, less) == UNDECIDED
+
+
+def test_a_setting_of_another_bar_has_beds_of_its_own():
+    with pytest.raises(ValueError, match="bar.width_m=0.02"):
+        Setting("wide", ("bar.width_m=0.02",))
+    Setting("wide", ("bar.width_m=0.02",), bed=("bar.width_m=0.02",))
 
 
 def test_other_engines_run_no_more_packings_than_there_are():
