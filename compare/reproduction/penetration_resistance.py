@@ -22,7 +22,7 @@ from .study import AS_PRINTED, RESISTANCE, UNTESTABLE, Claim, Findings, Picture,
 from .verdicts import all_above
 
 SLOPE = "resistance_slope_N_m"
-FINER = (2, 4)  # parts of the diameters
+FINER = {2: 1.0, 4: 1.5}  # parts of the diameters: how many times as long such a bed rests
 STIFFER = (2, 10)  # times the springs
 WIDER = (0.5, 2)  # times the bar
 CONSIDERABLE = 0.1  # share of the mean resistance: what the paper's word is taken for
@@ -33,14 +33,14 @@ def settings(case: Case) -> list[Setting]:
 
 
 def finer(case: Case) -> list[Setting]:
-    rest_s = case.resolved["time"]["rest_s"]  # finer beds take longer
+    rest_s = case.resolved["time"]["rest_s"]
     return [
         _of_beds(
             f"diameters / {parts}",
             scaled(case, size=1 / parts),
-            (f"time.rest_s={parts / FINER[0] * rest_s!r}",),
+            (f"time.rest_s={times * rest_s!r}",),
         )
-        for parts in FINER
+        for parts, times in FINER.items()
     ]
 
 
@@ -77,7 +77,7 @@ def findings(found: Found) -> Findings:
             finer(case),
             "The discs are large: that is one reason for the fluctuation.",
             "With the discs' diameters the fluctuation changes",
-            f"discs of 1/{FINER[-1]} of the diameters",
+            f"discs of 1/{max(FINER)} of the diameters",
         ),
         causes.of_low_resistance(
             found,
