@@ -49,11 +49,6 @@ class Case:
     def name(self) -> str:
         return self.resolved["name"]
 
-    def step_s(self, engine_name: str) -> float:
-        """The engine's time step [s]: its own where the case gives one, else that of the case."""
-        engine = self.resolved.get("engines", {}).get(engine_name, {})
-        return engine.get("step_s", self.resolved["time"]["step_s"])
-
     @classmethod
     def from_canonical(cls, canonical: bytes) -> "Case":
         return cls(json.loads(canonical), canonical)

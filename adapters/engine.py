@@ -25,6 +25,10 @@ class EngineFailure(Exception):
     """A run that did not end as it should; the text says what happened."""
 
 
+class Declined(Exception):
+    """A case that an engine, once started, says that it cannot run faithfully; the text says why."""
+
+
 class Code(ABC):
     """A discrete element code that runs a case. Paths that it names are relative to the run's folder, in which it is started."""
 
@@ -35,6 +39,7 @@ class Code(ABC):
         ""  # a sentence for README.txt: what the command needs that is not there of itself
     )
     cost_s: float  # measured CPU time per particle and step, to order runs and to notice a hang
+    substeps = 1  # time steps in one of time.step_s, where the case gives the code none of its own
 
     @abstractmethod
     def version(self) -> str:
@@ -68,8 +73,13 @@ class Code(ABC):
         """The reason for a failure in the code's own words, if its log gives one."""
         return None
 
+    def step_s(self, case: Case) -> float:
+        """Its time step [s]: its own where the case gives one, else by that of the case."""
+        own = case.resolved.get("engines", {}).get(self.name, {})
+        return own.get("step_s", case.resolved["time"]["step_s"] / self.substeps)
+
     def schedule(self, case: Case) -> Schedule:
-        return Schedule.of(case.resolved, case.step_s(self.name))
+        return Schedule.of(case.resolved, self.step_s(case))
 
     def expected_s(self, case: Case) -> float:
         """Rough CPU time of a run [s]."""
@@ -85,6 +95,9 @@ class Engine(Code):
     sources: str | None = None  # how the names of its files here start, where not with `name`
     samples_file: str  # grows by one line per sample: shows the progress
     kept_output: tuple[str, ...] = ()  # files of output/ worth keeping beside the dataset
+    declined_status: int | None = (
+        None  # exit status that says: not this case, for the reason in my last line
+    )
     log_noise: re.Pattern[bytes] | None = None  # of its log, not kept of a run that ended well
 
     @abstractmethod

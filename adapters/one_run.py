@@ -13,7 +13,7 @@ from . import run_folder
 from .attempt import Attempt
 from .dataset import Dataset, DatasetError
 from .dataset_faults import SCHEMA_VERSION, bar_speed_m_s
-from .engine import OUTPUT, Engine, EngineFailure
+from .engine import OUTPUT, Declined, Engine, EngineFailure
 from .machine import machine_facts
 from .process import Ending, LineCounter, Process
 from .run_folder import RunRequest, prepare, run_name
@@ -91,10 +91,12 @@ class Run:
         return share, self._process.wall_s * (1 - share) / share if share > 0 else None
 
     def read(self) -> Dataset:
-        """What a process that has ended left, its gates still to be set. Raises EngineFailure."""
+        """What a process that has ended left, its gates still to be set. Raises EngineFailure, Declined."""
         if self.ending.status != 0:
             log = (self.work_dir / LOG).read_bytes().decode(errors="replace")
             complaint = self.engine.complaint(log)
+            if self.ending.status == self.engine.declined_status:
+                raise Declined(complaint or "it does not say why")
             raise EngineFailure(
                 f"{self.ending} {self._stage()}" + (f": {complaint}" if complaint else "")
             )

@@ -11,7 +11,7 @@ from pathlib import Path
 from . import mpi
 from .attempt import clear_away
 from .dataset import Dataset
-from .engine import EngineFailure, EngineNotFound
+from .engine import Declined, EngineFailure, EngineNotFound
 from .engines import get_engine
 from .gates import REFERENCE, with_gates
 from .one_run import Limits, Run
@@ -143,6 +143,11 @@ class _Queue:
                 if not run.poll(self._limits):
                     continue
                 dataset = run.read()
+            except Declined as why:
+                self._running.remove(run)
+                run.stop()
+                reason = f"{run.engine.name}: {why}"
+                self._answer(run.request, "unsupported", failure=reason)
             except (EngineFailure, OSError) as failure:
                 self._running.remove(run)
                 self._fail(run, str(failure))

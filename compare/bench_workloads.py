@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from crossdem.adapters.case import Case, varied_table
-from crossdem.adapters.engines import DEFAULT_ENGINES
+from crossdem.adapters.engines import DEFAULT_ENGINES, get_engine
 
 PENETRATION_STEPS = 90_000  # of `bar`: as many as the paper's own penetration has
 # Of a static bed: a third of a second at 10 ns, a quarter of a minute at 500.
@@ -14,6 +14,7 @@ PARTICLE_STEPS = 30_000_000
 # Of any: enough that the first step, in which the contacts are found, is a small part; and so many that a few discs end.
 FEWEST_STEPS, MOST_STEPS = 300, 300_000
 QUICK = 100  # times fewer steps
+LAMMPS = "lammps"  # a user's engine, to which the case gives no time step
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Workload:
 
 def bar(case: Case, quick: bool) -> Workload:
     """The bar pushed down, at the largest time step at which every engine's bed rests: the smallest of the case's."""
-    step_s = min(case.step_s(engine) for engine in DEFAULT_ENGINES)
+    step_s = min(get_engine(engine).step_s(case) for engine in DEFAULT_ENGINES)
     time = case.resolved["time"]
     steps = min(PENETRATION_STEPS, round(time["penetration_s"] / step_s)) // (QUICK if quick else 1)
     rest_s = round(time["rest_s"] / step_s / (QUICK if quick else 1)) * step_s
@@ -48,7 +49,7 @@ def static(
 
     def workload(case: Case, quick: bool) -> Workload:
         bed = _wide_bed(case, particles)
-        step_s = min(case.step_s(engine) for engine in DEFAULT_ENGINES)
+        step_s = min(get_engine(engine).step_s(case) for engine in DEFAULT_ENGINES)
         steps = min(particle_steps // particles, MOST_STEPS) // (QUICK if quick else 1)
         steps = max(FEWEST_STEPS, steps)
         return Workload(static_name(particles), _at_step(bed, step_s, 0.0, steps), bed)
@@ -94,7 +95,7 @@ def _at_step(case: Case, step_s: float, rest_s: float, steps: int) -> Case:
     return varied_table(
         case,
         time=case.resolved["time"] | time | _one_output(steps * step_s),
-        engines={engine: {"step_s": step_s} for engine in case.resolved["engines"]},
+        engines={engine: {"step_s": step_s} for engine in (*case.resolved["engines"], LAMMPS)},
     )
 
 

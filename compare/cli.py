@@ -11,12 +11,15 @@ from click.core import ParameterSource
 from crossdem import ExitCode, __version__
 from crossdem.adapters.case import CaseError
 from crossdem.adapters.dataset import DatasetError
+from crossdem.adapters.engine import EngineNotFound
+from crossdem.adapters.engine_file import EngineFileError
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.solver import SolverError
 from crossdem.adapters.workflow.snakemake import WorkflowError
 from crossdem.adapters.workspace import WorkspaceError
 
 from . import bench_options, commands, options
+from .runs import TIERS
 from .ingredients import TARGETS
 from .doctor import doctor as examine
 
@@ -42,6 +45,27 @@ def check(**arguments):
 
 
 @cli.command()
+@options.own_engine
+@options.taking(options.case_or_reference)
+@click.option(
+    "--tier",
+    type=click.Choice(list(TIERS)),
+    default="smoke",
+    show_default=True,
+    help="How large the ensemble of the bed is.",
+)
+@click.option("--bed", is_flag=True, help="Run the bed whatever the ladder says.")
+@options.taking(options.out, options.jobs)
+def conform(**arguments):
+    """Say where a code of your own stands: the ladder, then the bed of CASE beside recorded runs of the other codes.
+
+    FILE is its description, FILE.toml or FILE.py:CLASS; docs/own_engine.md tells how to write one. Ends as check does; a
+    ladder that differs ends it before the bed.
+    """
+    return commands.conform(**arguments)
+
+
+@cli.command()
 @options.taking(options.case, *options.running)
 def run(**arguments):
     """Run CASE in every engine, without comparing."""
@@ -50,7 +74,13 @@ def run(**arguments):
 
 @cli.command()
 @options.taking(
-    options.case, options.engines, options.seeds, options.out, options.overrides, options.jobs
+    options.case,
+    options.own_engines,
+    options.engines,
+    options.seeds,
+    options.out,
+    options.overrides,
+    options.jobs,
 )
 def generate(**arguments):
     """Only write the engines' input for CASE, to run it elsewhere."""
@@ -140,7 +170,7 @@ def explain(**arguments):
 
 
 @cli.command()
-@options.taking(options.case, options.engines)
+@options.taking(options.case, options.own_engines, options.engines)
 @click.option(
     "--seed", type=click.IntRange(1, 1000), default=1, show_default=True, help="Of the packing."
 )
@@ -271,10 +301,10 @@ def main(arguments: list[str] | None = None) -> int:
     except click.ClickException as error:
         error.show()
         return ExitCode.BAD_INPUT
-    except (CaseError, DatasetError, WorkspaceError) as error:
+    except (CaseError, DatasetError, EngineFileError, WorkspaceError) as error:
         click.echo(error, err=True)
         return ExitCode.BAD_INPUT
-    except (SolverError, WorkflowError) as error:
+    except (EngineNotFound, SolverError, WorkflowError) as error:
         click.echo(error, err=True)
         return ExitCode.ENGINE_FAILED
     except OSError as error:

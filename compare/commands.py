@@ -83,6 +83,14 @@ def _check_ladder(*arguments) -> ExitCode:
     return check_ladder(*arguments)
 
 
+def conform(engine, case_file, tier, bed, out, jobs) -> ExitCode:
+    from .conform_command import conform as tested  # here: as in _report
+
+    case = _load(case_file, [])
+    _needs_bar(case)
+    return tested(engine, case, tier, bed, Workspace(out or Path("results") / engine), jobs)
+
+
 def run(case_file, engines, seeds, twins, out, overrides, jobs, profile, ranks) -> ExitCode:
     case = _load(case_file, overrides)
     check_cluster(profile)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from crossdem.adapters.engines import ENGINES
+from crossdem.adapters.external import External
+
 from .impact import ContactLaw
 
 
@@ -23,8 +26,13 @@ class EngineLaw:
 
 
 def engine_law(engine: str, case: dict) -> EngineLaw:
-    """Of `engine` on the resolved `case`; what of its readings the engine does not know has no effect."""
+    """Of `engine` on the resolved `case`; what of its readings the engine does not know has no effect.
+
+    A user's own has the law of the native scheme that its description names.
+    """
     scheme = case["scheme"]
+    if isinstance(own := ENGINES.get(engine), External):
+        engine, scheme = "native", scheme | own.scheme
     name = scheme["name"].replace("_", "-") if engine == "native" else engine
     clipped = scheme["attraction"] == "clipped"
     if name == "paper":

@@ -6,6 +6,7 @@ import pandas as pd
 from rich.console import Console
 
 from crossdem.adapters.case import Case, CaseError, varied
+from crossdem.adapters.engines import get_engine
 from crossdem.adapters.workspace import Workspace
 
 from .attribution import Attribution, Station, attribute
@@ -81,7 +82,7 @@ def route(case: Case, target: str) -> list[tuple[Ingredient, Variant]]:
 
 
 def _route(case: Case, target: str) -> list[tuple[Ingredient, Variant]]:
-    step_s = case.step_s(target)
+    step_s = get_engine(target).step_s(case)
     *mixed, native = walk(target)
     steps, taken = [], []
     for ingredient in mixed:

@@ -10,6 +10,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from crossdem.adapters.engines import get_engine
+
 from . import explain_tables as tables
 from .attribution import Attribution
 from .drawing import png_figure, svg_figure
@@ -79,7 +81,7 @@ def _values(attribution: Attribution) -> dict:
         "restless": any(change.restless for change in attribution.steps),
         "cut_off": cut_off(attribution),
         "value_rows": tables.value_rows(attribution),
-        "step_s": attribution.case.step_s(attribution.target),
+        "step_s": get_engine(attribution.target).step_s(attribution.case),
         "chart_wide": Markup(_chart(attribution, svg_figure, *WIDE)),
         "chart_narrow": Markup(_chart(attribution, svg_figure, *NARROW)),
         "seeds": plural(seeds, "packing"),

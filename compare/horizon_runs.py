@@ -17,7 +17,7 @@ from crossdem.adapters.workspace import Workspace
 from .comparison import in_order
 from .horizon import COMPARED_S, EngineHorizon, Horizon, closeness, growth
 from .progress import ProgressDisplay
-from .twin_schemes import TWIN_SCHEMES, native_twin_or_why
+from .twin_schemes import has_twin, native_twin_or_why, scheme_name
 from .variants import Variant, VariantRun, run_variants
 
 SEED = 1  # of the packing on which a check compares particle by particle
@@ -91,7 +91,7 @@ def _measure(
             found[name] = EngineHorizon(name, obstacle="; ".join(reasons))
         else:
             variants[name] = Variant(name, start, name)
-    schemes = {name: _native_scheme(start, name) for name in variants if name in TWIN_SCHEMES}
+    schemes = {name: _native_scheme(start, name) for name in variants if has_twin(name)}
     wanted = [*variants.values(), *(one for one in schemes.values() if isinstance(one, Variant))]
     twin = make_twin(packing, 1, workspace.twin_folder(packing, 1))
     pairs = [(variant, packing) for variant in wanted]
@@ -151,9 +151,7 @@ def from_packing(case: Case) -> Case:
 def _native_scheme(start: Case, engine: str) -> Variant | str:
     """What `engine` is compared with: the native solver in the scheme of its name; or why there is none."""
     twin = native_twin_or_why(start, engine)
-    return (
-        Variant(f"native scheme {TWIN_SCHEMES[engine]}", twin) if isinstance(twin, Case) else twin
-    )
+    return Variant(f"native scheme {scheme_name(engine)}", twin) if isinstance(twin, Case) else twin
 
 
 def _measured(
@@ -170,7 +168,7 @@ def _measured(
         return EngineHorizon(engine, grown, obstacle=f"its native scheme: {failure}", failed=True)
     scheme_run, scheme_twin = (one.dataset() for one in native)
     usual = growth(scheme_run, scheme_twin)
-    close = closeness(run, scheme_run, TWIN_SCHEMES[engine], usual)
+    close = closeness(run, scheme_run, scheme_name(engine), usual)
     return EngineHorizon(engine, grown, close, scheme_growth=usual)
 
 

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from crossdem.adapters.case import Case, CaseError, load_case
 from crossdem.adapters.dataset import Dataset
-from crossdem.adapters.engines import unknown_engines
+from crossdem.adapters.engines import get_engine, unknown_engines
 from crossdem.adapters.packing import Packing, make_packing
 from crossdem.adapters.run import RunRequest, RunResult, run_all
 from crossdem.adapters.workspace import Workspace
@@ -34,7 +34,7 @@ from .rungs import (
     twin_rung,
     without_result,
 )
-from .twin_schemes import TWIN_SCHEMES, native_twin_or_why
+from .twin_schemes import has_twin, native_twin_or_why, scheme_name
 from .wording import plural
 
 NATIVE = "native"
@@ -146,9 +146,7 @@ def _plan(path: Path, engines: Sequence[str], overrides: tuple[str, ...]) -> Pla
             for engine, settings in case.resolved["engines"].items()
         ]
         levels.append(load_case(path, [*overrides, *steps]))
-    twins = {
-        engine: native_twin_or_why(case, engine) for engine in engines if engine in TWIN_SCHEMES
-    }
+    twins = {engine: native_twin_or_why(case, engine) for engine in engines if has_twin(engine)}
     return Plan(path, overrides, case, levels, twins)
 
 
@@ -210,7 +208,7 @@ class _Runs:
         twin = self.plan.twins.get(self.engine)
         if twin is None:
             return []
-        about = f"native in the scheme {TWIN_SCHEMES[self.engine]}"
+        about = f"native in the scheme {scheme_name(self.engine)}"
         if missing := self._missing(TWIN, about, [0]):
             return [missing]
         if isinstance(twin, str):
@@ -262,5 +260,5 @@ class _Runs:
 
 def _shown(plan: Plan, engines: Sequence[str]) -> LadderCase:
     case = plan.case
-    steps = {engine: case.step_s(engine) for engine in engines}
+    steps = {engine: get_engine(engine).step_s(case) for engine in engines}
     return LadderCase(case.name, case.resolved["title"], case.hash, steps)

@@ -1,12 +1,12 @@
 """Options and arguments that several commands take."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import click
 from click.core import ParameterSource
 
-from crossdem.adapters.engines import DEFAULT_ENGINES, ENGINES
+from crossdem.adapters.engines import DEFAULT_ENGINES, ENGINES, attach
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.workflow.snakemake import WorkflowError, profile_folder
 
@@ -24,12 +24,13 @@ def names_among(text: str, known: Collection[str], what: str) -> list[str]:
 
 
 def engine_names(context, parameter, text: str) -> list[str]:
+    own = context.meta.get(_OWN, [])
     if context.params.get("replay"):
         if text.strip() == "none":
-            return []
+            return own
         if context.get_parameter_source(parameter.name) is ParameterSource.DEFAULT:
-            return [REFERENCE]
-    return names_among(text, ENGINES, "engine")
+            return own or [REFERENCE]
+    return list(dict.fromkeys([*names_among(text, ENGINES, "engine"), *own]))
 
 
 def time_steps(context, parameter, text: str) -> list[float]:
@@ -47,7 +48,7 @@ case_or_reference = click.argument(
     "case_file",
     metavar="[CASE]",
     type=click.Path(path_type=Path),
-    default=Path("reference_cases/bar_penetration.toml"),
+    default=RECORDS.parent / "bar_penetration.toml",
 )
 overrides = click.option(
     "--set",
@@ -63,6 +64,26 @@ engines = click.option(
     callback=engine_names,
     help="Which engines to run, separated by commas.",
 )
+
+
+own_engines = click.option(
+    "--engine",
+    metavar="FILE",
+    multiple=True,
+    is_eager=True,
+    expose_value=False,
+    callback=lambda context, parameter, files: context.meta.update({_OWN: _attach(files)}),
+    help="Also run a code of your own: FILE.toml, or FILE.py:CLASS. May be repeated. docs/own_engine.md tells how.",
+)
+own_engine = click.argument(
+    "engine", metavar="FILE", callback=lambda context, parameter, file: _attach([file])[0]
+)
+_OWN = "crossdem.own_engines"
+
+
+def _attach(descriptions: Sequence[str]) -> list[str]:
+    """The names of users' engines, from now on known. Raises EngineFileError."""
+    return [attach(description) for description in descriptions]
 
 
 def seeds_of(default: int, help_text: str):
@@ -177,7 +198,7 @@ replay = click.option(
     "--replay",
     is_flag=True,
     is_eager=True,
-    help="Run only --engines (by default native; none: not one) here, on recorded packings, and take the runs of all "
+    help="Run only --engine and --engines (by default native; none: not one) here, on recorded packings, and take the runs of all "
     "others from the record; with none, of all its packings unless --seeds or --tier say otherwise.",
 )
 record = click.option(
@@ -188,7 +209,16 @@ record = click.option(
     help="The folder of recorded ensembles. [default: reference_cases/expected beside the program]",
 )
 
-running = [engines, *ensemble, out, overrides, jobs_or_tasks, profile, ranks]  # of an ensemble
+running = [
+    own_engines,
+    engines,
+    *ensemble,
+    out,
+    overrides,
+    jobs_or_tasks,
+    profile,
+    ranks,
+]  # of an ensemble
 
 
 def taking(*options):

@@ -14,12 +14,14 @@ import numpy as np
 import pandas as pd
 
 from crossdem.adapters.dataset import Dataset, Motion
+from crossdem.adapters.engines import get_engine
 
 from .answers import ANSWERS, Answer
 from .engine_laws import engine_law
 from .outcomes import AGREES, DIFFERS, NO_RESULT, NO_SUCH_LAW, NOT_COMPARABLE
 from .refinement import extrapolated, observed_order
 from .start import Start
+from .twin_schemes import own_limit_m
 from .wording import MINUS, number
 
 TWIN, CLOSED_FORM = "twin", "closed form"
@@ -29,6 +31,7 @@ REFERENCE_LIMIT_N = 1e-8  # on bar, its tip and shaft, and floor
 REFERENCE_LIMIT_J = 1e-11  # of kinetic energy
 OTHER_ORDER = "the transcription adds up contacts in an order of its own"
 SAME_BITS = "the native scheme of the engine's name does the same operations in the same order"
+OWN_LIMIT = "the engine's description says so"
 FORCES = ("force_x_N", "force_y_N", "tip_force_y_N", "shaft_force_y_N", "floor_force_y_N")
 TIME_SLACK_S = 1e-9
 LARGEST_PLAIN = 1e6  # values up to here are written without exponent
@@ -106,6 +109,8 @@ def twin_rung(
     """
     entry = next((table for table in case["twin"] if table["engine"] == engine), {})
     limit_m = entry.get("limit_m", REFERENCE_LIMIT_M if twin_table is not None else 0.0)
+    if own_m := own_limit_m(engine):
+        limit_m = own_m
     until_s = entry.get("until_s", case["time"]["penetration_s"])
     compared = run.motion.time_s <= until_s + TIME_SLACK_S
     way_m = run.motion.position_m[compared] - twin.position_m[compared]
@@ -133,7 +138,9 @@ def twin_rung(
         time_s=float(run.motion.time_s[worst]),
         limit_m=limit_m,
         until_s=until_s,
-        reason=entry.get("reason", SAME_BITS if twin_table is None else OTHER_ORDER),
+        reason=OWN_LIMIT
+        if own_m
+        else entry.get("reason", SAME_BITS if twin_table is None else OTHER_ORDER),
         difference_N=difference_N,
     )
 
@@ -159,7 +166,7 @@ def answer_rung(case: dict, engine: str, entry: dict, runs: Sequence[Dataset]) -
     expected = next(
         (
             table
-            for table in case["difference"]
+            for table in [*case["difference"], *_own_differences(engine, case["name"])]
             if (table["engine"], table["quantity"]) == (engine, answer.name)
         ),
         None,
@@ -184,6 +191,12 @@ def answer_rung(case: dict, engine: str, entry: dict, runs: Sequence[Dataset]) -
     )
     outcome, sentence = _judged(rung)
     return AnswerRung(**{**vars(rung), "outcome": outcome, "sentence": sentence})
+
+
+def _own_differences(engine: str, case_name: str) -> list[dict]:
+    """Those that the description of a user's engine names for this case."""
+    own = getattr(get_engine(engine), "differences", ())
+    return [{"engine": engine, **entry} for entry in own if entry["case"] == case_name]
 
 
 def without_result(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from crossdem.adapters.case import Case, CaseError, varied_table
+from crossdem.adapters.engines import get_engine
+from crossdem.adapters.external import External
 
 TWIN_SCHEMES = {
     "liggghts": "liggghts",
@@ -12,6 +14,26 @@ TWIN_SCHEMES = {
 }
 # The readings of a case that an engine follows; of the others its law has its own, and so has its twin.
 FOLLOWED_READINGS = {"liggghts": ("attraction",), "liggghts-averaged": ("attraction",)}
+
+
+def has_twin(engine: str) -> bool:
+    """Users' engines have one where their description says how close they are to it."""
+    return engine in TWIN_SCHEMES or own_limit_m(engine) is not None
+
+
+def own_limit_m(engine: str) -> float | None:
+    """How far [m] a user's engine says that its particles may be from those of its twin."""
+    found = get_engine(engine)
+    return found.twin_limit_m if isinstance(found, External) else None
+
+
+def scheme_name(engine: str) -> str:
+    """Of an engine that has a twin, for people."""
+    if engine in TWIN_SCHEMES:
+        return TWIN_SCHEMES[engine]
+    readings = dict(get_engine(engine).scheme)
+    name = readings.pop("name", "paper")
+    return " ".join([name, *(f"{key} = {value}" for key, value in readings.items())])
 
 
 def native_twin_or_why(case: Case, engine: str) -> Case | str:
@@ -27,7 +49,12 @@ def native_twin(case: Case, engine: str) -> Case:
 
     Raises KeyError for an engine without such a scheme, CaseError where the solver refuses it.
     """
-    scheme = case.resolved["scheme"]
-    followed = {key: scheme[key] for key in FOLLOWED_READINGS.get(engine, ())}
-    time = case.resolved["time"] | {"step_s": case.step_s(engine)}
-    return varied_table(case, scheme={"name": TWIN_SCHEMES[engine], **followed}, time=time)
+    asked = case.resolved["scheme"]
+    if engine in TWIN_SCHEMES:
+        followed = {key: asked[key] for key in FOLLOWED_READINGS.get(engine, ())}
+        scheme = {"name": TWIN_SCHEMES[engine], **followed}
+    else:
+        own = get_engine(engine).scheme
+        scheme = dict(own) if "name" in own else asked | own
+    time = case.resolved["time"] | {"step_s": get_engine(engine).step_s(case)}
+    return varied_table(case, scheme=scheme, time=time)

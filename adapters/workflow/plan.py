@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..case import Case
+from ..engines import attach, attached
 from ..files import write_whole
 from ..one_run import Limits
 from ..packing import Packing
@@ -64,6 +65,7 @@ def write_plan(groups: Sequence[Group], journal: Path, folder: Path) -> None:
     plan = {
         "started_in": os.getcwd(),
         "journal": str(journal),
+        "attached": attached(run.request.engine_name for group in groups for run in group.runs),
         "cases": {name: case.canonical.decode() for name, case in cases.items()},
         "groups": {
             group.name: {
@@ -82,6 +84,8 @@ def read_group(folder: Path, name: str) -> tuple[list[PlannedRun], Path]:
     """The runs of a task and the folder of the journal. Goes to the folder that their paths are relative to."""
     plan = json.loads((folder / PLAN).read_text(encoding="utf-8"))
     os.chdir(plan["started_in"])
+    for description in plan["attached"]:
+        attach(description)
     cases = {
         name: Case.from_canonical(canonical.encode()) for name, canonical in plan["cases"].items()
     }

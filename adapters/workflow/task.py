@@ -51,7 +51,9 @@ def _report(result: RunResult) -> dict:
 
 
 def _is_worth_another_try(result: RunResult) -> bool:
-    """Unless it is there, or a motion beyond reason of the native solver, which is the same every time."""
+    """Unless it is there, cannot be had of its engine, or is a motion beyond reason of the native solver: the same every time."""
+    if result.status == "unsupported":
+        return False
     beyond_reason = result.exit_status == BEYOND_REASON and result.request.engine_name == REFERENCE
     return result.failure is not None and not beyond_reason
 

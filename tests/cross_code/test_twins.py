@@ -12,6 +12,7 @@ from small_case import REFERENCE_CASE
 
 from crossdem.adapters.case import load_case
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.engines import get_engine
 from crossdem.adapters.packing import make_packing
 from crossdem.adapters.run import RunRequest, run_all
 from crossdem.compare.twin_schemes import TWIN_SCHEMES, native_twin, native_twin_or_why
@@ -175,7 +176,7 @@ def test_the_native_scheme_of_its_name_moves_every_particle_alike(case_of, engin
         assert isinstance(native_twin_or_why(case, engine_name), str)
         return
     engine, native = twins(case, engine_name, tmp_path)
-    parted, step_s = parting(engine, native), case.step_s(engine_name)
+    parted, step_s = parting(engine, native), get_engine(engine_name).step_s(case)
     print(f"{case_of.__name__}, {engine_name}: {parted}")
     limit_m = LIMITS_M[case_of].get(engine_name, 0.0)
     assert parted["position_m"] <= limit_m, parted

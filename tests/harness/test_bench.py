@@ -11,7 +11,7 @@ from small_case import small_file
 from test_cli import _without_engines
 
 from crossdem.adapters import packing
-from crossdem.adapters.case import load_case, varied_table
+from crossdem.adapters.case import load_case
 from crossdem.adapters.engine import EngineFailure
 from crossdem.adapters.engines import DEFAULT_ENGINES, get_engine
 from crossdem.adapters.solver import SolverError
@@ -176,10 +176,12 @@ def test_a_bed_that_another_build_of_the_solver_made_tells_no_time(paper, tmp_pa
 LOOP = "Loop time of {} on 1 procs for {} steps with 944 atoms, finish time Sun Nov 22 10:10:37\n"
 
 
-def test_the_time_of_liggghts_is_that_of_its_last_run(paper):
+def test_the_time_of_liggghts_and_lammps_is_that_of_their_steps(paper):
     engine, case = get_engine("liggghts"), bar(paper, quick=True).case
     log = LOOP.format("1.2e-05", 0) + "Pair time\n\n" + LOOP.format("12.1", 1140)
     assert told(engine, case, log).wall_s == 12.1
+    two = LOOP.format("2.5", 140) + LOOP.format("10.0", 1000)
+    assert told(engine, case, two).wall_s == 12.5
     with pytest.raises(EngineFailure, match="made 0 steps instead of 1140"):
         told(engine, case, LOOP.format("1.2e-05", 0))
 
@@ -346,28 +348,6 @@ def test_lammps_is_timed_where_it_is_and_asked_of_nobody(tmp_path, monkeypatch):
         return bench_command.bench_engines(case, ["bar"], engines, [1], 1, True, workspace, None)
 
     assert (ended(None), ended(["native", "lammps"])) == (0, 3)
-
-
-def test_lammps_refuses_what_its_deck_cannot_say(paper):
-    code = CLOCKS["lammps"].code
-    assert code.unsupported(paper) == []
-    undamped = {
-        "particle_wall": paper.resolved["contact"]["particle_wall"] | {"normal_damping_N_s_m": 0.0}
-    }
-    refused = varied_table(
-        paper,
-        scheme={"name": "liggghts", "attraction": "clipped"},
-        contact=paper.resolved["contact"] | undamped,
-    )
-    clipped, damping = code.unsupported(refused)
-    assert "scheme.attraction" in clipped and "contact.particle_wall" in damping
-    contact = paper.resolved["contact"]
-    sticky = contact["particle_particle"] | {"tensile_strength_N": 0.1, "rolling_friction": 0.1}
-    options = code.unsupported(varied_table(paper, contact=contact | {"particle_particle": sticky}))
-    assert [reason.split(":")[0].split(".")[-1] for reason in options] == [
-        "tensile_strength_N",
-        "rolling_friction",
-    ]
 
 
 def test_an_engine_that_tells_no_time_is_named_and_not_counted(fake, tmp_path):

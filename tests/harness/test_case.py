@@ -6,6 +6,7 @@ import pytest
 from command_line import REFERENCE
 
 from crossdem.adapters.case import Case, CaseError, load_case
+from crossdem.adapters.engines import get_engine
 from crossdem.adapters.overrides import OverrideError, apply_override
 
 
@@ -19,8 +20,8 @@ def test_the_reference_case_resolves_to_its_own_values():
 
 def test_each_engine_has_its_own_time_step():
     case = load_case(REFERENCE)
-    assert case.step_s("native") == 1e-4
-    assert case.step_s("liggghts") == 5e-5
+    assert get_engine("native").step_s(case) == 1e-4
+    assert get_engine("liggghts").step_s(case) == 5e-5
 
 
 def test_a_resolved_case_resolves_to_itself_and_keeps_its_hash(tmp_path):

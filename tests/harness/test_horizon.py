@@ -13,6 +13,7 @@ from test_report import Page
 
 from crossdem import ExitCode
 from crossdem.adapters.case import CaseError, load_case
+from crossdem.adapters.engines import get_engine
 from crossdem.adapters.packing import make_packing, make_twin
 from crossdem.adapters.workspace import Workspace
 from crossdem.compare import (
@@ -267,7 +268,7 @@ def test_there_are_frames_before_the_end_of_the_comparison(interval_s):
     time = start.resolved["time"]
     assert time["frame_interval_s"] <= min(0.1, time["penetration_s"]) / 5 * (1 + 1e-9)
     for engine in ("native", "liggghts", "yade"):
-        steps = time["frame_interval_s"] / start.step_s(engine)
+        steps = time["frame_interval_s"] / get_engine(engine).step_s(start)
         assert steps == pytest.approx(round(steps), abs=1e-6)
 
 
@@ -324,7 +325,7 @@ def test_an_engine_without_a_native_twin_keeps_its_growth(case, tmp_path, monkey
     def refused(start, engine):
         raise CaseError(["time.step_s: too large"])
 
-    monkeypatch.setattr(horizon_runs, "TWIN_SCHEMES", {"native": "paper"})
+    monkeypatch.setattr(horizon_runs, "has_twin", lambda engine: True)
     monkeypatch.setattr(twin_schemes, "native_twin", refused)
     horizon = horizon_runs.find_horizon(case, ["native"], 1, Workspace(tmp_path / "out"), 1, QUIET)
     [one] = horizon.engines
