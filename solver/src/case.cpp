@@ -16,11 +16,17 @@ std::string joined(const std::vector<std::string>& faults) {
   return text;
 }
 
-/// nlohmann::json silently keeps the last of two equal keys; a case must not depend on that.
+constexpr int deepest_nesting = 32;  // far above the schema's; what is nested without end cannot be shown in a message
+constexpr std::size_t shown_of_key = 64;  // bytes, as long as a name may be
+
+/// nlohmann::json silently keeps the last of two equal keys; a case must not depend on that. What is nested too deeply
+/// is a CaseError at once.
 class DuplicateKeys {
  public:
-  bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
+  bool operator()(int depth, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
     using Event = nlohmann::json::parse_event_t;
+    if (depth > deepest_nesting)
+      throw CaseError({"nested more than " + std::to_string(deepest_nesting) + " levels deep: no case is"});
     if (event == Event::object_start) open_.emplace_back();
     if (event == Event::key) {
       open_.back().current = parsed.get<std::string>();
@@ -39,7 +45,10 @@ class DuplicateKeys {
 
   [[nodiscard]] std::string path() const {
     std::string text;
-    for (const Object& object : open_) text += (text.empty() ? "" : ".") + object.current;
+    for (const Object& object : open_) {
+      const bool whole = object.current.size() <= shown_of_key;
+      text += (text.empty() ? "" : ".") + (whole ? object.current : object.current.substr(0, shown_of_key) + "...");
+    }
     return text;
   }
 

@@ -80,8 +80,9 @@ Packing read_packing(const std::filesystem::path& csv, const Case& setup) {
   const std::filesystem::path beside = std::filesystem::path(csv).replace_filename("packing.json");
   try {
     const nlohmann::json facts = nlohmann::json::parse(read_text(beside, most_bytes));
-    if (!facts.at("seed").is_number_unsigned())
-      throw CaseError({beside.string() + ": seed must be a whole number that is not negative"});
+    for (const char* key : {"seed", "contacts"})
+      if (!facts.at(key).is_number_unsigned())
+        throw CaseError({beside.string() + ": " + key + " must be a whole number that is not negative"});
     packing.seed = facts.at("seed").get<std::uint64_t>();
     if (setup.bar) packing.bar_tip = facts.at("bar_tip_m").get<double>();
     packing.contacts = facts.at("contacts").get<std::size_t>();

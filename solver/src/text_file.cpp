@@ -12,8 +12,9 @@ std::string read_text(const std::filesystem::path& path, std::uintmax_t most_byt
     throw FileError(path, "is larger than " + std::to_string(most_bytes) + " bytes");
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
-  if (!in || std::filesystem::is_directory(path, error) || !(text << in.rdbuf()))
-    throw FileError(path, "cannot be read");
+  const bool is_file = in && !std::filesystem::is_directory(path, error);
+  if (is_file && in.peek() == std::ifstream::traits_type::eof() && !in.bad()) return {};  // as << finds nothing to do
+  if (!is_file || in.bad() || !(text << in.rdbuf())) throw FileError(path, "cannot be read");
   return std::move(text).str();
 }
 

@@ -203,6 +203,19 @@ TEST(Case, TextThatIsNotJsonSaysWhere) {
   EXPECT_EQ(faults_of("[]"), std::vector<std::string>{"must be a table, is []"});
 }
 
+TEST(Case, TextThatIsNestedWithoutEndIsRefusedInASentence) {
+  for (const std::size_t depth : {100U, 100'000U, 500'000U}) {
+    const std::string text = R"({"name": )" + std::string(depth, '[') + std::string(depth, ']') + "}";
+    EXPECT_EQ(faults_of(text), std::vector<std::string>{"nested more than 32 levels deep: no case is"});
+  }
+}
+
+TEST(Case, ALongKeyIsShownByItsStart) {
+  const std::string key(100'000, 'k');
+  const std::vector<std::string> faults = faults_of("{\"" + key + R"(": {"a": 1, "a": 1, "a": 1}})");
+  EXPECT_EQ(faults.at(0), std::string(64, 'k') + "....a: the key stands twice");
+}
+
 TEST(Case, AKeyThatStandsTwiceIsAFault) {
   std::string text = small_json().dump();
   text.insert(text.rfind('}'), R"(,"name":"other")");

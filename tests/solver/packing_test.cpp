@@ -192,6 +192,18 @@ TEST_F(PackingFile, RefusesASeedThatIsNoSeed) {
   }
 }
 
+TEST_F(PackingFile, RefusesAnEmptyFileAsOneWithoutItsFirstLine) {
+  std::ofstream(folder / "packing.csv") << "";
+  expect_refused("packing.csv: the first line must be id,");
+}
+
+TEST_F(PackingFile, RefusesContactsThatAreNoCount) {
+  for (const char* contacts : {"-1", "1.5", "1e300", "\"1\""}) {
+    std::ofstream(folder / "packing.json") << R"({"seed": 1, "contacts": )" << contacts << "}";
+    expect_refused("packing.json: contacts must be a whole number that is not negative");
+  }
+}
+
 TEST_F(PackingFile, RefusesAPenetrationThroughTheFloor) {
   Case deep = few();
   deep.time.penetration = 100 * *bed.bar_tip;  // at 0.01 m/s

@@ -23,10 +23,17 @@ TEST(TextFile, RefusesWhatIsTooLarge) {
   EXPECT_NE(message->find("is larger than 100 bytes"), std::string::npos);
 }
 
+TEST(TextFile, ReadsAnEmptyFileAsNoText) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "empty") << "";
+  EXPECT_EQ(read_text(folder / "empty", 100), "");
+}
+
 TEST(TextFile, RefusesWhatCannotBeReadOrMade) {
   const TemporaryFolder folder;
   EXPECT_THROW(read_text(folder / "none", 100), FileError);
   EXPECT_THROW(read_text(folder.path(), 100), FileError) << "a folder";
+  EXPECT_THROW(read_text("/proc/self/mem", 100), FileError) << "which fails only when it is read";
   EXPECT_THROW(LineFile(folder / "none" / "file"), FileError);
 }
 
