@@ -112,7 +112,7 @@ class Dataset:
             case = json.loads(case_bytes)
             resistance = pd.read_csv(folder / "resistance.csv", float_precision="round_trip")
             motion, radius_m = read_motion(folder / "motion.h5")
-        except (OSError, ValueError, MotionFileError) as error:
+        except (OSError, ValueError, RecursionError, MotionFileError) as error:
             raise DatasetError(
                 f"{folder}: not a finished run ({error}); give run folders such as OUT/runs/*"
             ) from error

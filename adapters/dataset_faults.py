@@ -23,27 +23,38 @@ RESISTANCE_COLUMNS = (
     "kinetic_energy_J",  # of all particles, rotation (I = m r^2 / 2) included
 )
 
-MANIFEST_KEYS = (
-    "schema_version",
-    "case_name",
-    "case_hash",
-    "packing_hash",
-    "seed",
-    "twin",
-    "engine",
-    "engine_version",
-    "compiler",
-    "time_step_s",
-    "command",
-    "started_utc",
-    "wall_s",
-    "cpu_s",
-    "particles",
-    "frames",
-    "samples",
-    "limitations",
-    "gates",
-    "run_key",
+MANIFEST_KEYS = {  # and what each holds
+    "schema_version": int,
+    "case_name": str,
+    "case_hash": str,
+    "packing_hash": str,
+    "seed": int,
+    "twin": int,
+    "engine": str,
+    "engine_version": str,
+    "compiler": str | None,
+    "time_step_s": float | int,
+    "command": list,
+    "started_utc": str,
+    "wall_s": float | int,
+    "cpu_s": float | int,
+    "particles": int,
+    "frames": int,
+    "samples": int,
+    "limitations": list,
+    "gates": list,
+    "run_key": str,
+}
+
+# Of the case, by table, what data are compared with. The solver has read it before; a file may have been spoilt since.
+CASE_NUMBERS = {
+    "particles": ("count",),
+    "time": ("penetration_s", "sample_interval_s", "frame_interval_s"),
+    "container": ("width_m", "height_m"),
+}
+BAR_NUMBERS = ("speed_m_s", "centre_x_m", "width_m", "length_m")
+MOST = (
+    1e15  # of such a number, in its unit: far above any use, far below what cannot be computed with
 )
 
 GATE_KEYS = {"name", "value", "limit", "passed", "message"}
@@ -75,7 +86,7 @@ def faults(
     case: dict, manifest: dict, radius_m: np.ndarray, motion: Motion, resistance: pd.DataFrame
 ) -> list[str]:
     """Why these are not one whole, sane run of `case`; a later kind of fault only once the earlier are clean."""
-    for find in (_manifest_faults, _shape_faults, _finite_faults, _value_faults):
+    for find in (_case_faults, _manifest_faults, _shape_faults, _finite_faults, _value_faults):
         found = list(find(case, manifest, np.asarray(radius_m), motion, resistance))
         if found:
             return found
@@ -83,8 +94,21 @@ def faults(
 
 
 def _times_s(case: dict, interval_key: str) -> np.ndarray:
-    interval_s = case["time"][interval_key]
-    return np.arange(round(case["time"]["penetration_s"] / interval_s) + 1) * interval_s
+    return np.arange(_count_of_times(case, interval_key)) * case["time"][interval_key]
+
+
+def _count_of_times(case: dict, interval_key: str) -> int:
+    return round(case["time"]["penetration_s"] / case["time"][interval_key]) + 1
+
+
+def _case_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]:
+    wanted = CASE_NUMBERS | ({"bar": BAR_NUMBERS} if "bar" in case else {})
+    for name, keys in wanted.items():
+        table = case.get(name)
+        for key in keys:
+            value = table.get(key) if isinstance(table, dict) else None
+            if type(value) not in (int, float) or not 0 < value < MOST:
+                yield f"the case's {name}.{key} is not a positive number"
 
 
 def _manifest_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]:
@@ -93,10 +117,14 @@ def _manifest_faults(case, manifest, radius_m, motion, resistance) -> Iterator[s
         yield f"the manifest lacks {', '.join(missing)}"
     elif manifest["schema_version"] != SCHEMA_VERSION:
         yield f"the manifest is of schema version {manifest['schema_version']!r}; this crossdem reads {SCHEMA_VERSION}"
-    elif not isinstance(manifest["gates"], list) or not all(
-        isinstance(gate, dict) and gate.keys() >= GATE_KEYS for gate in manifest["gates"]
-    ):
+    elif wrong := [key for key, kind in MANIFEST_KEYS.items() if not _is(manifest[key], kind)]:
+        yield f"the manifest's {', '.join(wrong)} are not of the kind that they must be"
+    elif not all(isinstance(gate, dict) and gate.keys() >= GATE_KEYS for gate in manifest["gates"]):
         yield f"the manifest's gates are not a list of objects with {', '.join(sorted(GATE_KEYS))}"
+
+
+def _is(value, kind) -> bool:
+    return isinstance(value, kind) and not isinstance(value, bool)
 
 
 def _shape_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]:
@@ -104,17 +132,13 @@ def _shape_faults(case, manifest, radius_m, motion, resistance) -> Iterator[str]
         found = ", ".join(map(str, resistance.columns))
         yield f"the resistance has the columns {found}; expected {', '.join(RESISTANCE_COLUMNS)}"
     else:
-        text = [
-            name
-            for name in RESISTANCE_COLUMNS
-            if not pd.api.types.is_numeric_dtype(resistance[name])
-        ]
+        text = [name for name in RESISTANCE_COLUMNS if resistance[name].dtype.kind not in "iuf"]
         if text:
             yield f"the resistance has columns that are not numbers: {', '.join(text)}"
 
     particles = case["particles"]["count"]
-    frames = len(frame_times_s(case))
-    samples = len(sample_times_s(case))
+    frames = _count_of_times(case, "frame_interval_s")
+    samples = _count_of_times(case, "sample_interval_s")
     if len(resistance) != samples:
         yield f"{len(resistance)} of {samples} samples"
     if len(motion.time_s) != frames:

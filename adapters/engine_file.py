@@ -17,6 +17,7 @@ from .toml_text import TextError, read_toml
 NAME = re.compile(r"[a-z][a-z0-9-]{0,31}")
 PLACEHOLDER = re.compile(r"\{(\w*)\}")
 VERSION_LIMIT_S = 60.0
+MOST = 1e15  # of a number, in its unit: far above any use
 LONGEST_VERSION = 200  # characters
 
 
@@ -154,12 +155,17 @@ def _is_source(source, units) -> bool:
         isinstance(source, dict)
         and source.keys() <= {"column", "unit"}
         and isinstance(source.get("column", ""), str)
-        and source.get("unit", next(iter(units), None)) in (units or {None})
+        and source.get("unit", next(iter(units), None)) in tuple(units or (None,))
     )
 
 
 def _is_words(value) -> bool:
-    return isinstance(value, list) and value != [] and all(isinstance(w, str) and w for w in value)
+    """Of a command: no system takes one with a zero byte."""
+    return (
+        isinstance(value, list)
+        and value != []
+        and all(isinstance(word, str) and word and "\0" not in word for word in value)
+    )
 
 
 def _is_below(value) -> bool:
@@ -169,9 +175,7 @@ def _is_below(value) -> bool:
 
 
 def _is_number(value) -> bool:
-    return (
-        isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value < float("inf")
-    )
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value < MOST
 
 
 def _is_difference(entry) -> bool:

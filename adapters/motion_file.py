@@ -72,24 +72,38 @@ def write_header(file: h5py.File, engine: str, version: str) -> None:
 def read_motion(path: Path) -> tuple[Motion, np.ndarray]:
     """The motion in `path` and the radii (N,) of its particles. Raises MotionFileError."""
     try:
+        most_bytes = path.stat().st_size
         with h5py.File(path, "r") as file:
+
+            def values(group: h5py.Group, name: str) -> np.ndarray:
+                return _read(group[name], most_bytes)
+
             soil = file["particles/soil"]
-            ids = soil["id"][()]
+            ids = values(soil, "id")
             if not np.array_equal(ids, np.arange(len(ids))):
                 raise MotionFileError(f"{path}: the particles are not in the order of their ids")
             motion = Motion(
-                time_s=soil["position/time"][()],
-                position_m=soil["position/value"][()],
-                velocity_m_s=soil["velocity/value"][()],
-                angular_velocity_rad_s=soil["angular_velocity/value"][()],
-                angle_rad=soil["angle/value"][()] if "angle" in soil else None,
-                bar_tip_m=file["observables/bar/tip/value"][()]
+                time_s=values(soil, "position/time"),
+                position_m=values(soil, "position/value"),
+                velocity_m_s=values(soil, "velocity/value"),
+                angular_velocity_rad_s=values(soil, "angular_velocity/value"),
+                angle_rad=values(soil, "angle/value") if "angle" in soil else None,
+                bar_tip_m=values(file, "observables/bar/tip/value")
                 if "observables/bar" in file
                 else None,
             )
-            return motion, soil["radius"][()]
-    except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
+            return motion, values(soil, "radius")
+    except (OSError, AttributeError, KeyError, TypeError, ValueError, RuntimeError) as error:
         raise MotionFileError(f"{path}: not a motion file of crossdem ({error})") from error
+
+
+def _read(dataset: h5py.Dataset, most_bytes: int) -> np.ndarray:
+    """All numbers of `dataset`. They lie in the file as they are: what claims more bytes than it has, claims too much."""
+    if dataset.dtype.kind not in "iuf":
+        raise TypeError(f"{dataset.name} does not hold numbers")
+    if dataset.nbytes > most_bytes:
+        raise ValueError(f"{dataset.name} is larger than its file")
+    return dataset[()]
 
 
 def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:

@@ -5,11 +5,23 @@ import shutil
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 from small_case import small_case
 
 from crossdem.adapters.packing import make_packing
 
 HERE = Path(__file__).parent
+
+# Always the same examples; CROSSDEM_EXAMPLES is how many. What a fixture gives is restored by the tests themselves.
+settings.register_profile(
+    "crossdem",
+    derandomize=True,
+    database=None,
+    deadline=None,
+    max_examples=int(os.environ.get("CROSSDEM_EXAMPLES", "25")),
+    suppress_health_check=list(HealthCheck),
+)
+settings.load_profile("crossdem")
 
 
 @pytest.fixture(scope="session")
