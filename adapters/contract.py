@@ -148,7 +148,7 @@ def _read(output: Path, table: Columns, file: str, wanted: tuple[str, ...]) -> p
         raise ValueError(f"{paths[0].name} lacks the columns {', '.join(missing)}; it has {there}")
     taken = {}
     for name, source in sources.items():
-        values = pd.to_numeric(found[source.name], errors="coerce").astype(float)
+        values = pd.to_numeric(found[source.name], errors="coerce")
         if bad := int((~np.isfinite(values)).sum()):
             raise ValueError(
                 f"{paths[0].name}: {bad} values of {source.name} are not finite numbers"

@@ -104,8 +104,9 @@ def what_is_lacking(case):
         for key in ("tensile_strength_N", "rolling_friction"):
             if contact.get(key):
                 return f"contact.{pair}.{key} is not in its deck"
-        if contact["shear_damping_N_s_m"] > 0 and contact["normal_damping_N_s_m"] == 0:
-            return f"it knows shear damping as a multiple of normal damping, which is 0 in contact.{pair}"
+        normal, shear = contact["normal_damping_N_s_m"], contact["shear_damping_N_s_m"]
+        if shear > 0 and (normal == 0 or math.isinf(shear / normal)):
+            return f"it knows shear damping as a multiple of normal damping, which is too small in contact.{pair}"
     return ""
 
 

@@ -91,9 +91,7 @@ def test_a_motion_file_that_claims_what_it_has_not(name, kind, run, folder):
             file[name] = h5py.SoftLink(f"/{name}")
         else:
             packed = {"compression": "gzip"} if kind == "compressed" else {}
-            file.create_dataset(
-                name, shape, dtype=np.float64, chunks=(100,) * len(shape), **packed
-            )
+            file.create_dataset(name, shape, dtype=np.float64, chunks=(100,) * len(shape), **packed)
     with pytest.raises(DatasetError):
         Dataset.read(folder)
     read_damaged(run, folder, "motion.h5", place.read_bytes())
