@@ -119,7 +119,9 @@ def _manifest_faults(case, manifest, radius_m, motion, resistance) -> Iterator[s
         yield f"the manifest is of schema version {manifest['schema_version']!r}; this crossdem reads {SCHEMA_VERSION}"
     elif wrong := [key for key, kind in MANIFEST_KEYS.items() if not _is(manifest[key], kind)]:
         yield f"the manifest's {', '.join(wrong)} are not of the kind that they must be"
-    elif not isinstance(manifest["gates"], list) or not all(isinstance(gate, dict) and gate.keys() >= GATE_KEYS for gate in manifest["gates"]):
+    elif not isinstance(manifest["gates"], list) or not all(
+        isinstance(gate, dict) and gate.keys() >= GATE_KEYS for gate in manifest["gates"]
+    ):
         yield f"the manifest's gates are not a list of objects with {', '.join(sorted(GATE_KEYS))}"
 
 
