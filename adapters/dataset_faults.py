@@ -11,17 +11,19 @@ from .motion_file import Motion
 
 SCHEMA_VERSION = 1
 
-RESISTANCE_COLUMNS = (
-    "time_s",  # 0 at the end of the rest, when the bar starts
-    "depth_m",  # travel of the bar since then; 0 without a bar, as are the four forces that follow
-    "force_x_N",  # of the particles on the bar, at that step
-    "force_y_N",  # as above; > 0 is upwards, the penetration resistance
-    "tip_force_y_N",  # share of force_y_N on the bottom face and its corners
-    "shaft_force_y_N",  # share on the sides
-    "floor_force_y_N",  # of the particles on the floor, at that step; < 0 is downwards
-    "contacts",  # pairs of particles that overlap, without walls and bar
-    "kinetic_energy_J",  # of all particles, rotation (I = m r^2 / 2) included
-)
+# Each column of resistance.csv with its definition; the last part of a name is its unit.
+RESISTANCE = {
+    "time_s": "0 at the end of the rest, when the bar starts",
+    "depth_m": "travel of the bar since then; 0 without a bar, as are the four forces that follow",
+    "force_x_N": "horizontal force of the particles on the bar, at that step; > 0 is to the right",
+    "force_y_N": "vertical force of the particles on the bar, at that step; > 0 is upwards, the penetration resistance",
+    "tip_force_y_N": "share of force_y_N on the bottom face and its corners",
+    "shaft_force_y_N": "share of force_y_N on the bar's sides",
+    "floor_force_y_N": "vertical force of the particles on the floor, at that step; < 0 is downwards",
+    "contacts": "pairs of particles that overlap, without walls and bar",
+    "kinetic_energy_J": "kinetic energy of all particles, rotation (I = m r^2 / 2) included",
+}
+RESISTANCE_COLUMNS = tuple(RESISTANCE)
 
 MANIFEST_KEYS = {  # and what each holds
     "schema_version": int,

@@ -9,6 +9,21 @@ import h5py
 import numpy as np
 
 
+# Each dataset of a motion file with its definition; its unit is the attribute `unit`. F frames, N particles.
+DATASETS = {
+    "particles/soil/box/edges": "(2,) inner width and height of the container",
+    "particles/soil/radius": "(N,) radii of the discs",
+    "particles/soil/id": "(N,) numbers of the particles, as in packing.csv",
+    "particles/soil/position/value": "(F, N, 2) centres: x from the left wall, y upwards from the floor",
+    "particles/soil/position/step": "(F,) number of the time step, 0 when the bar starts; every other step is this dataset",
+    "particles/soil/position/time": "(F,) time, 0 when the bar starts; every other time is this dataset",
+    "particles/soil/velocity/value": "(F, N, 2) velocities: x > 0 to the right, y > 0 upwards",
+    "particles/soil/angular_velocity/value": "(F, N) angular velocities, counter-clockwise > 0",
+    "particles/soil/angle/value": "(F, N) angles, counter-clockwise > 0, 0 at the packing; absent where an engine keeps none",
+    "observables/bar/tip/value": "(F,) height of the bar's bottom face above the floor",
+}
+
+
 class MotionFileError(Exception):
     """A motion file that cannot be read, or that is not in the layout written here."""
 

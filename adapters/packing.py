@@ -13,11 +13,17 @@ import pandas as pd
 from .case import Case, CaseError
 from .solver import call_solver, messages, solver_sha256
 
-COLUMNS = (
-    *("id", "x_m", "y_m", "radius_m"),
-    *("velocity_x_m_s", "velocity_y_m_s"),
-    "angular_velocity_rad_s",  # counter-clockwise > 0
-)
+# Each column of packing.csv with its definition; the last part of a name is its unit.
+PACKING = {
+    "id": "number of the particle, from 0",
+    "x_m": "centre, from the left wall; > 0 is to the right",
+    "y_m": "centre, from the floor; > 0 is upwards",
+    "radius_m": "radius of the disc",
+    "velocity_x_m_s": "horizontal velocity; > 0 is to the right",
+    "velocity_y_m_s": "vertical velocity; > 0 is upwards",
+    "angular_velocity_rad_s": "angular velocity; > 0 is counter-clockwise",
+}
+COLUMNS = tuple(PACKING)
 
 
 # How far the twins of a packing lie apart: far below any physics, far above the last bit of a position.

@@ -31,7 +31,7 @@ def cli():
 
 
 @cli.command()
-@options.taking(options.case, options.replay, *options.running, options.record)
+@options.taking(options.case, options.replay, options.against, *options.running, options.record)
 def check(**arguments):
     """Run CASE in every engine, compare, and end with a verdict and a report.
 
@@ -257,6 +257,45 @@ def calibrate(**arguments):
     Ends with 0 when its error rates are as low as they are to be, 1 when not, 4 when there are too few recorded runs.
     """
     return commands.calibrate(**arguments)
+
+
+@cli.group()
+def dataset():
+    """Reference datasets: packages of all runs of a case, to be published, verified and compared with."""
+
+
+@dataset.command("build")
+@options.taking(options.case, *options.running)
+@click.option(
+    "--native-seeds",
+    type=click.IntRange(1, 1000),
+    help="How many packings the native solver runs, where it is to run more than the others. [default: as --seeds]",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="The package, which is not there yet.",
+)
+@click.option(
+    "--archive", is_flag=True, help="Also write DIR.tar.gz, the same bytes for the same package."
+)
+def dataset_build(**arguments):
+    """Run CASE in every engine or reuse its runs, and write a package DIR of them, whole or not at all.
+
+    Ends with 0 whatever the verdict in the package, and with 3 and without a package when a run has no result.
+    """
+    return commands.dataset_build(**arguments)
+
+
+@dataset.command("verify")
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option("--identity", metavar="HEX", help="What its SHA256SUMS is to have as SHA-256.")
+def dataset_verify(**arguments):
+    """List every byte and file by which the package DIR is not what was built: 0 for none, 1 else, 2 for no package."""
+    return commands.dataset_verify(**arguments)
 
 
 @cli.group(invoke_without_command=True)

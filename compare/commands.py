@@ -21,6 +21,7 @@ from .ensemble import Ensemble
 from .explain import explain_case
 from .horizon import Horizon
 from .horizon_runs import find_horizon, horizon_of_runs
+from .dataset_package import read_package
 from .record_command import plans_of, record_case
 from .recorded import check_writable, find_record
 from .replay import replayed, restore_packings, said_of
@@ -32,23 +33,30 @@ from .summary import print_summary
 
 
 def check(
-    case_file, engines, seeds, twins, out, overrides, jobs, profile, ranks, replay, record
+    case_file, engines, seeds, twins, out, overrides, jobs, profile, ranks, replay, against, record
 ) -> ExitCode:
     case = None if case_file.is_dir() else _load(case_file, overrides)
     if not case or case.resolved["particle"]:  # no bed, of which there could be seeds
-        _refuse_on_ladder({"--replay": replay, "--profile": profile, "--mpi-ranks": ranks > 1})
+        _refuse_on_ladder(
+            {
+                "--replay": replay,
+                "--against": against,
+                "--profile": profile,
+                "--mpi-ranks": ranks > 1,
+            }
+        )
         return _check_ladder(case_file, engines, out, overrides, jobs)
     _needs_bar(case)
     check_cluster(profile)
-    if replay:
-        return _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, record)
+    if replay or against:
+        recorded = read_package(against, case) if against else find_record(case, record)
+        return _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, recorded)
     with _workspace(case, overrides, out) as workspace:
         runs, found = _run(case, engines, seeds, workspace, jobs, twins, profile, ranks)
     return _report(case, map(Dataset.read, runs.folders), runs, workspace, found)
 
 
-def _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, folder) -> ExitCode:
-    record = find_record(case, folder)
+def _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, record) -> ExitCode:
     others = replayed(record, engines, seeds, twins)
     click.echo(said_of(others))
     runs, found = Runs((), {}), None
@@ -216,6 +224,50 @@ def calibrate(case_file, overrides, splits, record, out, jobs) -> ExitCode:
     recorded = find_record(case, record)
     with _workspace(case, overrides, out) as workspace:
         return calibrate_case(case, recorded, splits, workspace.root / "calibrate", jobs)
+
+
+def dataset_build(
+    case_file,
+    engines,
+    seeds,
+    twins,
+    native_seeds,
+    overrides,
+    out,
+    output,
+    archive,
+    jobs,
+    profile,
+    ranks,
+) -> ExitCode:
+    from .dataset_command import build, refuse_places
+
+    case = _load(case_file, overrides)
+    _needs_bar(case)
+    check_cluster(profile)
+    refuse_places(output, archive)
+    with _workspace(case, overrides, out) as workspace:
+        return build(
+            case,
+            case_file,
+            overrides,
+            engines,
+            seeds,
+            native_seeds or seeds,
+            twins,
+            output,
+            archive,
+            workspace,
+            jobs,
+            profile,
+            ranks,
+        )
+
+
+def dataset_verify(folder, identity) -> ExitCode:
+    from .dataset_command import verify
+
+    return verify(folder, identity)
 
 
 def bench(engines, workloads, threads, quick, repeats, json_file, case_file, out) -> ExitCode:

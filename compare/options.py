@@ -25,7 +25,7 @@ def names_among(text: str, known: Collection[str], what: str) -> list[str]:
 
 def engine_names(context, parameter, text: str) -> list[str]:
     own = context.meta.get(_OWN, [])
-    if context.params.get("replay"):
+    if context.params.get("replay") or context.params.get("against"):
         if text.strip() == "none":
             return own
         if context.get_parameter_source(parameter.name) is ParameterSource.DEFAULT:
@@ -121,6 +121,18 @@ def _record_folder(context, parameter, folder: Path) -> Path:
     return folder
 
 
+def _replay(context, parameter, replay: bool) -> bool:
+    if replay and context.params.get("against"):
+        raise click.BadParameter("compares with the record, and --against with a package: give one")
+    return replay
+
+
+def _against(context, parameter, folder: Path | None) -> Path | None:
+    if folder and context.params.get("replay"):
+        raise click.BadParameter("compares with a package, and --replay with the record: give one")
+    return folder
+
+
 def _profile_name(context, parameter, name: str | None) -> str | None:
     if name:
         try:
@@ -198,8 +210,17 @@ replay = click.option(
     "--replay",
     is_flag=True,
     is_eager=True,
+    callback=_replay,
     help="Run only --engine and --engines (by default native; none: not one) here, on recorded packings, and take the runs of all "
     "others from the record; with none, of all its packings unless --seeds or --tier say otherwise.",
+)
+against = click.option(
+    "--against",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    is_eager=True,
+    callback=_against,
+    help="As --replay, with the runs of the package in DIR, which `crossdem dataset build` made: it is verified first.",
 )
 record = click.option(
     "--record",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from importlib import metadata
 
@@ -84,6 +85,12 @@ def record(comparison: Comparison) -> dict:
             "libraries": libraries(),
         }
     )
+
+
+def record_text(comparison: Comparison) -> str:
+    """report.json."""
+    text = json.dumps(record(comparison), indent=2, ensure_ascii=False, allow_nan=False)
+    return text + "\n"
 
 
 def libraries() -> dict[str, str]:

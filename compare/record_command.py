@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
@@ -13,17 +13,15 @@ from rich.console import Console
 
 from crossdem import ExitCode, __version__
 from crossdem.adapters.case import Case, CaseError
-from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.machine import machine_facts
-from crossdem.adapters.packing import Packing
 from crossdem.adapters.solver import SolverError, solver_sha256
 from crossdem.adapters.workspace import Workspace
 
-from .ensemble import RUN, Ensemble
-from .fingerprint import content_sha256
+from .ensemble import Ensemble
+from .finished_runs import packing_files, read_runs
 from .record import libraries
-from .recorded import CONTENT, DATE, RECORDS, SCHEMA_VERSION, Record
+from .recorded import DATE, RECORDS, SCHEMA_VERSION, Record
 from .recorded_tables import FIELD_DIGITS
 from .runs import Runs, run_engines
 
@@ -91,7 +89,7 @@ def record_case(
         folders: dict[Path, None] = {}
         for engines, seeds, twins in _batches(plan):
             runs = run_engines(case, list(engines), seeds, workspace, jobs, console, twins, profile)
-            _refuse_failures(runs)
+            refuse_failures(runs, "not recorded")
             folders |= dict.fromkeys(runs.folders)
         home = folder / case.name / plan.name
         record_of(case, list(folders), plan, _command(case_file, plans, folder)).write(home)
@@ -101,35 +99,9 @@ def record_case(
 
 def record_of(case: Case, folders: Sequence[Path], plan: Plan, command: str) -> Record:
     """The record of the finished runs in `folders`, which are of this case."""
-    facts: dict[tuple[str, int, int], dict] = {}
-    packings: dict[int, Packing] = {}
-
-    def read() -> Iterator[Dataset]:
-        for folder in folders:
-            dataset = Dataset.read(folder)
-            facts[dataset.engine, dataset.seed, dataset.twin] = {CONTENT: content_sha256(dataset)}
-            if dataset.twin == 0:
-                packings[dataset.seed] = Packing.read(folder / "inputs")
-            yield dataset
-
-    ensemble = Ensemble.of(read())
-    manifests = {run: manifest | facts[run] for run, manifest in ensemble.manifests.items()}
-    in_order = sorted(manifests, key=lambda run: (ensemble.engines.index(run[0]), *run[1:]))
-    ensemble = Ensemble(ensemble.endpoints, ensemble.profiles, ensemble.fields, manifests).selected(
-        in_order
-    )
+    ensemble, packings = read_runs(folders)
     return Record(
-        case=case,
-        ensemble=ensemble,
-        packings={
-            seed: (packing.folder / "packing.csv").read_text(encoding="utf-8")
-            for seed, packing in sorted(packings.items())
-        },
-        about_packings={
-            seed: json.loads((packing.folder / "packing.json").read_bytes())
-            for seed, packing in sorted(packings.items())
-        },
-        about=_manifest(case, ensemble, plan, command),
+        case, ensemble, *packing_files(packings), _manifest(case, ensemble, plan, command)
     )
 
 
@@ -155,10 +127,11 @@ def _batches(plan: Plan) -> list[tuple[tuple[str, ...], int, int]]:
     return list(dict.fromkeys(batches))
 
 
-def _refuse_failures(runs: Runs) -> None:
+def refuse_failures(runs: Runs, what: str) -> None:
+    """Raises SolverError where a run has no result; `what` then was not made, for people."""
     if runs.failures:
         lines = (f"{engine}, seed {seed}: {why}" for (engine, seed), why in runs.failures.items())
-        raise SolverError("\n".join(["not recorded, as runs are missing:", *lines]))
+        raise SolverError("\n".join([f"{what}, as runs are missing:", *lines]))
 
 
 def _manifest(case: Case, ensemble: Ensemble, plan: Plan, command: str) -> dict:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -30,7 +29,7 @@ from .drawing import svg
 from .figure_files import write_figures
 from .junit import junit_xml
 from .pages import embedded, render
-from .record import libraries, record
+from .record import libraries, record_text
 from .recorded import DATE
 from .viewer import viewer_data
 
@@ -59,8 +58,7 @@ def write_report(comparison: Comparison, out_dir: Path) -> Path:
     out_dir = Path(out_dir)
     out_dir.mkdir(parents=True, exist_ok=True)
     values = _values(comparison)
-    text = json.dumps(record(comparison), indent=2, ensure_ascii=False, allow_nan=False)
-    write_whole(out_dir / "report.json", (text + "\n").encode())
+    write_whole(out_dir / "report.json", record_text(comparison).encode())
     write_whole(out_dir / "junit.xml", junit_xml(comparison))
     write_whole(out_dir / "report.md", render("report.md", values).encode())
     write_figures(comparison, out_dir)
