@@ -1,0 +1,266 @@
+"""Packages of reference runs: whole, described to the last file, told apart by every byte, and fit to be compared with."""
+
+import csv
+import json
+import shutil
+import subprocess
+import tarfile
+from fnmatch import fnmatchcase
+from pathlib import Path
+from urllib.parse import unquote
+
+import h5py
+import pytest
+import yaml
+from small_case import small_file
+
+from crossdem import ExitCode
+from crossdem.adapters.case import load_case
+from crossdem.adapters.motion_file import DATASETS
+from crossdem.compare.cli import main
+from crossdem.compare.dataset_documents import TIMED
+from crossdem.compare.dataset_package import read_package
+from crossdem.compare.dataset_sums import SUMS, files_in, sha256_of, write_sums
+
+NATIVE = ("--engines", "native", "--seeds", "1", "--native-seeds", "2", "--jobs", "2")
+
+
+def build(case_file, package, work, *options):
+    return main(
+        ["dataset", "build", str(case_file), "-o", str(package), "--out", str(work), *options]
+    )
+
+
+@pytest.fixture(scope="module")
+def case_file(tmp_path_factory):
+    return small_file(tmp_path_factory.mktemp("case"))
+
+
+@pytest.fixture(scope="module")
+def package(case_file, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("built")
+    assert build(case_file, folder / "package", folder / "work", *NATIVE, "--archive") == 0
+    return folder / "package"
+
+
+@pytest.fixture
+def copy(package, tmp_path):
+    return Path(shutil.copytree(package, tmp_path / "copy"))
+
+
+def verify(folder, capsys, *options):
+    capsys.readouterr()
+    code = main(["dataset", "verify", str(folder), *options])
+    return code, capsys.readouterr().out.splitlines()
+
+
+def descriptor(folder):
+    return json.loads((folder / "datapackage.json").read_text(encoding="utf-8"))
+
+
+def test_sha256sum_reads_the_sums_and_verify_finds_no_fault(package, capsys):
+    done = subprocess.run(["sha256sum", "-c", "--strict", SUMS], cwd=package, capture_output=True)
+    assert done.returncode == 0
+    identity = sha256_of(package / SUMS)
+    code, lines = verify(package, capsys, "--identity", identity)
+    assert code == ExitCode.AGREES and identity in lines[0]
+
+
+def test_one_flipped_bit_is_found_in_every_file(copy, capsys):
+    for name in files_in(copy):
+        path = copy / name
+        sound = path.read_bytes()
+        for place in (0, len(sound) // 2, len(sound) - 1) if sound else ():
+            changed = bytearray(sound)
+            changed[place] ^= 1
+            path.write_bytes(changed)
+            code, lines = verify(copy, capsys)
+            assert code == ExitCode.DIFFERS and any(name in line for line in lines), (name, place)
+        path.write_bytes(sound)
+    assert verify(copy, capsys)[0] == ExitCode.AGREES
+
+
+def test_each_missing_file_is_named(copy, capsys):
+    for name in files_in(copy):
+        (copy / name).rename(copy.parent / "aside")
+        code, lines = verify(copy, capsys)
+        assert code == ExitCode.DIFFERS and f"{name} is missing" in lines
+        (copy.parent / "aside").rename(copy / name)
+
+
+def test_an_added_file_folder_or_link_is_found(copy, capsys):
+    (copy / "runs" / "more.csv").touch()
+    (copy / "empty").mkdir()
+    (copy / "link").symlink_to("README.md")
+    code, lines = verify(copy, capsys)
+    assert code == ExitCode.DIFFERS
+    assert {"runs/more.csv was added", "empty/ was added", "link was added"} <= set(lines)
+
+
+def test_sums_written_anew_do_not_hide_a_change(copy, package, capsys):
+    with open(copy / "case.json", "ab") as file:
+        file.write(b" ")
+    write_sums(copy)
+    code, lines = verify(copy, capsys)
+    assert code == ExitCode.DIFFERS and "case.json is not what datapackage.json lists" in lines
+    identity = sha256_of(package / SUMS)
+    assert any(identity in line for line in verify(copy, capsys, "--identity", identity)[1])
+
+
+def test_a_folder_without_a_package_ends_with_2(tmp_path):
+    assert main(["dataset", "verify", str(tmp_path)]) == ExitCode.BAD_INPUT
+
+
+def test_the_same_runs_make_the_same_package_and_archive(package, case_file):
+    again = package.parent / "again" / "package"
+    assert build(case_file, again, package.parent / "work", *NATIVE, "--archive") == 0
+    assert sha256_of(again / SUMS) == sha256_of(package / SUMS)
+    archives = [folder.with_name("package.tar.gz").read_bytes() for folder in (package, again)]
+    assert archives[0] == archives[1]
+    with tarfile.open(package.with_name("package.tar.gz")) as archive:
+        assert archive.getnames() == [f"package/{name}" for name in files_in(package)]
+
+
+def test_other_runs_of_the_same_versions_differ_in_nothing_but_times(package, case_file, tmp_path):
+    again = tmp_path / "package"
+    assert build(case_file, again, tmp_path / "work", *NATIVE) == 0
+    assert files_in(again) == files_in(package)
+    vary = [n for n in files_in(again) if (again / n).read_bytes() != (package / n).read_bytes()]
+    assert [name for name in vary if not any(fnmatchcase(name, key) for key in TIMED)] == []
+
+
+def test_a_failed_engine_leaves_no_package(case_file, tmp_path, fake, capsys):
+    fake.fault("crash")
+    options = ("--engines", "native,liggghts", "--seeds", "1")
+    code = build(case_file, tmp_path / "package", tmp_path / "work", *options)
+    assert code == ExitCode.ENGINE_FAILED
+    assert "not built, as runs are missing" in capsys.readouterr().err
+    assert not list(tmp_path.glob("*package*"))
+
+
+def test_a_place_that_is_taken_is_refused_before_there_are_runs(package, case_file, tmp_path):
+    sums = sha256_of(package / SUMS)
+    assert build(case_file, package, tmp_path / "work", *NATIVE) == ExitCode.BAD_INPUT
+    assert sha256_of(package / SUMS) == sums and not (tmp_path / "work").exists()
+
+
+def test_the_data_package_lists_every_file_with_its_size_and_hash(package):
+    resources = {entry["path"]: entry for entry in descriptor(package)["resources"]}
+    assert sorted(resources) == [
+        name for name in files_in(package) if name not in ("datapackage.json", SUMS)
+    ]
+    for name, entry in resources.items():
+        assert entry["bytes"] == (package / name).stat().st_size
+        assert entry["hash"] == f"sha256:{sha256_of(package / name)}"
+    assert len({entry["name"] for entry in resources.values()}) == len(resources)
+
+
+def test_schemas_name_the_columns_that_tables_have(package):
+    tables = [entry for entry in descriptor(package)["resources"] if "schema" in entry]
+    assert {Path(entry["path"]).name for entry in tables} > {"resistance.csv", "endpoints.csv"}
+    for entry in tables:
+        with open(package / entry["path"], newline="", encoding="utf-8") as file:
+            header = next(csv.reader(file))
+        assert header == [field["name"] for field in entry["schema"]["fields"]], entry["path"]
+
+
+def test_every_dataset_of_a_motion_file_is_defined_with_its_unit(package):
+    with open(package / "columns.csv", newline="", encoding="utf-8") as file:
+        rows = {row["name"]: row for row in csv.DictReader(file) if row["files"].endswith(".h5")}
+    objects = set()
+    with h5py.File(next(package.glob("runs/*/motion.h5"))) as file:
+        defined = {h5py.h5o.get_info(file[name].id).addr for name in rows}
+        file.visititems(
+            lambda _, item: objects.add(h5py.h5o.get_info(item.id).addr)
+            if isinstance(item, h5py.Dataset)
+            else None
+        )
+        assert all(row["unit"] == file[n].attrs.get("unit", "1") for n, row in rows.items())
+    assert defined == objects and rows.keys() <= DATASETS.keys()
+
+
+def test_the_crate_defines_all_that_it_names(package):
+    graph = json.loads((package / "ro-crate-metadata.json").read_text(encoding="utf-8"))["@graph"]
+    entities = {entity["@id"]: entity for entity in graph}
+    assert len(entities) == len(graph)
+    named = set()
+
+    def walk(value):
+        if isinstance(value, dict):
+            named.update([value["@id"]] if set(value) == {"@id"} else [])
+        for entry in value.values() if isinstance(value, dict) else value:
+            if isinstance(entry, (dict, list)):
+                walk(entry)
+
+    walk(graph)
+    assert named <= entities.keys()
+    files = {unquote(entity["@id"]) for entity in graph if entity["@type"] == "File"}
+    assert files | {"ro-crate-metadata.json"} == set(files_in(package))
+    actions = [entity for entity in graph if entity["@type"] == "CreateAction"]
+    assert len(actions) == 2
+    for action in actions:
+        assert entities[action["instrument"]["@id"]]["@type"] == "SoftwareApplication"
+        assert action["startTime"] <= action["endTime"] and action["object"] and action["result"]
+
+
+def test_the_citation_has_the_keys_that_the_format_needs(package):
+    citation = yaml.safe_load((package / "CITATION.cff").read_text(encoding="utf-8"))
+    assert {"cff-version", "message", "title", "authors"} <= citation.keys()
+    assert citation["type"] == "dataset" and citation["license"] == "CC-BY-4.0"
+
+
+def test_packings_are_read_back_to_the_last_bit(package, case_file, tmp_path):
+    record = read_package(package, load_case(case_file))
+    assert record.seeds == (1, 2)
+    for seed in record.seeds:
+        record.restore(seed, tmp_path / str(seed))
+        there = package / "packings" / f"seed{seed}" / "packing.csv"
+        assert (tmp_path / str(seed) / "packing.csv").read_bytes() == there.read_bytes()
+
+
+def against(case_file, package, out, *options):
+    return main(["check", str(case_file), "--against", str(package), "--out", str(out), *options])
+
+
+def test_runs_made_here_are_compared_with_those_of_engines_that_are_gone(
+    case_file, tmp_path, fake, monkeypatch
+):
+    both = ("--engines", "native,liggghts", "--seeds", "2", "--jobs", "2")
+    built = tmp_path / "package"
+    assert build(case_file, built, tmp_path / "work", *both) == ExitCode.AGREES
+    monkeypatch.setenv("PATH", "/usr/bin:/bin")
+    code = against(case_file, built, tmp_path / "out", "--engines", "native")
+    here = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    there = json.loads((built / "comparison" / "report.json").read_text(encoding="utf-8"))
+    assert code == here["verdict"]["exit_code"]
+    assert {(run["engine"], run["recorded"]) for run in here["runs"]} == {
+        ("native", False),
+        ("liggghts", True),
+    }
+    for run in there["runs"]:
+        [twin] = [
+            one
+            for one in here["runs"]
+            if (one["engine"], one["seed"]) == (run["engine"], run["seed"])
+        ]
+        assert twin["values"] == run["values"] and twin["packing_hash"] == run["packing_hash"]
+    assert here["checks"] == there["checks"]
+
+
+def test_a_damaged_package_or_one_of_another_case_is_not_compared_with(
+    copy, case_file, tmp_path, capsys
+):
+    other = ("--set", "contact.particle_wall.friction=0.1")
+    assert against(case_file, copy, tmp_path / "out", *other) == ExitCode.BAD_INPUT
+    assert "another case" in capsys.readouterr().err
+    (copy / "README.md").unlink()
+    assert against(case_file, copy, tmp_path / "out") == ExitCode.BAD_INPUT
+    assert "README.md is missing" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_against_and_replay_exclude_each_other(order, case_file, package, capsys):
+    options = [["--replay"], ["--against", str(package)]][::order]
+    assert main(["check", str(case_file), *sum(options, [])]) == ExitCode.BAD_INPUT
+    assert "give one" in capsys.readouterr().err
