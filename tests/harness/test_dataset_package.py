@@ -119,6 +119,8 @@ def test_the_same_runs_make_the_same_package_and_archive(package, case_file):
     assert archives[0] == archives[1]
     with tarfile.open(package.with_name("package.tar.gz")) as archive:
         assert archive.getnames() == [f"package/{name}" for name in files_in(package)]
+        assert {(entry.mtime, entry.uid, entry.uname) for entry in archive} == {(0, 0, "")}
+    assert archives[0][4:8] == bytes(4)  # the time in gzip's header, whole seconds
 
 
 def test_other_runs_of_the_same_versions_differ_in_nothing_but_times(package, case_file, tmp_path):
