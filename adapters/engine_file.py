@@ -14,6 +14,7 @@ from .engine import INPUTS, OUTPUT, EngineNotFound
 from .external import External
 from .toml_text import TextError, read_toml
 
+RUN_INPUTS = ("case.json", "packing.csv", "packing.json")
 NAME = re.compile(r"[a-z][a-z0-9-]{0,31}")
 PLACEHOLDER = re.compile(r"\{(\w*)\}")
 VERSION_LIMIT_S = 60.0
@@ -174,6 +175,12 @@ def _is_below(value) -> bool:
     return parts != () and ".." not in parts and not Path(value).is_absolute()
 
 
+def _have_places(files: list[str]) -> bool:
+    """Whether each can lie in a run's inputs/ under its own name."""
+    names = [*RUN_INPUTS, *(Path(file).name for file in files)]
+    return all(map(_is_below, files)) and len(set(names)) == len(names)
+
+
 def _is_number(value) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value < MOST
 
@@ -208,8 +215,9 @@ KEYS = {
     ),
     "files": (
         False,
-        lambda value: value == [] or _is_words(value) and all(map(_is_below, value)),
-        "files beside this one, which are copied into {inputs} of every run",
+        lambda value: value == [] or _is_words(value) and _have_places(value),
+        "files beside this one, which are copied into {inputs} of every run, beside case.json, packing.csv and packing.json: no "
+        "two of one name",
     ),
     "substeps": (
         False,

@@ -201,6 +201,14 @@ def test_a_fault_of_a_description_names_file_and_key(more, fault, describe):
     assert str(told.value).startswith(f"{describe(more)}: ") and fault in str(told.value)
 
 
+@pytest.mark.parametrize("files", ['"case.json"', '"a.in", "sub/a.in"', '"../a.in"', '"/a.in"'])
+def test_files_of_a_code_cannot_take_the_place_of_others(files, describe):
+    usual = 'files = ["door_engine.py"]'
+    assert usual in DESCRIPTION
+    with pytest.raises(EngineFileError, match="files: files beside this one"):
+        read_engine(describe(text=DESCRIPTION.replace(usual, f"files = [{files}]")))
+
+
 def test_every_fault_of_a_description_is_told_at_once(describe, tmp_path):
     text = 'name = "Bad Name"\nversion = "x"\nrun = ["x", "{nothing}"]\n'
     with pytest.raises(EngineFileError) as told:
