@@ -35,8 +35,10 @@ std::unique_ptr<Stepper> make_stepper(const Case& setup, World& world) {
     Readings only_start_differs = choice.readings;  // these two concern the start, not the step
     only_start_differs.initial_displacement = {};
     only_start_differs.inertia = {};
-    if (only_start_differs == Readings{} && has_plain_contacts(setup))
-      return std::make_unique<BatchedStepper<PaperBatches>>(setup, world);
+    if (only_start_differs == Readings{}) {
+      if (has_plain_contacts(setup)) return std::make_unique<BatchedStepper<PaperBatches>>(setup, world);
+      return std::make_unique<PaperStepper<OptionsScheme>>(OptionsScheme{}, choice.readings, world);
+    }
     return std::make_unique<PaperStepper<MixedScheme>>(MixedScheme{{choice.readings}, {choice.readings.integrator}},
                                                        choice.readings, world);
   }

@@ -13,6 +13,13 @@ struct PaperScheme {
   AveragedDisplacement integrator;
 };
 
+/// The same with joints or rolling resistance.
+struct OptionsScheme {
+  using Spring = RollingContactSpring;
+  TanakaLaw<DefaultReadings> law;
+  AveragedDisplacement integrator;
+};
+
 /// Any readings, and rolling resistance.
 struct MixedScheme {
   using Spring = RollingContactSpring;
