@@ -11,7 +11,7 @@ import pandas as pd
 
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset, Motion
-from crossdem.adapters.engines import get_engine
+from crossdem.adapters.engines import ENGINES
 
 REFERENCE_CASE = Path(__file__).parents[2] / "reference_cases" / "bar_penetration.toml"
 SLOPE_N_M = 16.0
@@ -98,7 +98,7 @@ def dataset(
         "engine": engine,
         "engine_version": f"{engine} 1.0",
         "compiler": "g++ 12.2.0 -O3" if engine == "native" else None,
-        "time_step_s": get_engine(engine).step_s(run_case),
+        "time_step_s": ENGINES.get(engine, ENGINES["native"]).step_s(run_case),
         "command": [engine, "inputs"],
         "started_utc": "2024-01-01T00:00:00Z",
         "wall_s": 30.0,

@@ -54,9 +54,10 @@ def run_of(case, engine="native", speed_m_s=0.0, moved_m=0.0, floor_N=0.0):
     table = pd.DataFrame(0.0, index=range(samples), columns=RESISTANCE_COLUMNS)
     table["time_s"] = np.linspace(0, 0.1, samples)
     table["floor_force_y_N"] = floor_N
-    counts = {"particles": 1, "frames": frames, "samples": samples, "gates": []}
-    manifest = dict.fromkeys(MANIFEST_KEYS, "made up") | counts
+    manifest = dict.fromkeys(MANIFEST_KEYS, "made up")
     manifest |= {"schema_version": SCHEMA_VERSION, "engine": engine, "time_step_s": 1e-4}
+    manifest |= {"particles": 1, "frames": frames, "samples": samples, "seed": 1, "twin": 0}
+    manifest |= {"command": [], "wall_s": 1.0, "cpu_s": 1.0, "limitations": [], "gates": []}
     motion = Motion(time_s, position_m, velocity, still, None, None)
     return Dataset(case, manifest, np.array([0.0025]), motion, table)
 
