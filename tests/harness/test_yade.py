@@ -80,12 +80,13 @@ def output(case, packing, tmp_path):
 
 
 def manifest(case, packing):
-    keys = "case_name case_hash packing_hash engine engine_version compiler command started_utc wall_s cpu_s run_key"
+    keys = "case_name case_hash packing_hash engine engine_version compiler started_utc run_key"
     counts = {"particles": 40, "frames": 6, "samples": 11, "limitations": [], "gates": []}
     return (
         dict.fromkeys(keys.split(), "")
         | counts
         | {"schema_version": 1, "seed": 1, "twin": 0, "time_step_s": 5e-5}
+        | {"command": [], "wall_s": 1.0, "cpu_s": 1.0}
     )
 
 
