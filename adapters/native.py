@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from pathlib import Path
 
 import pandas as pd
@@ -65,7 +66,7 @@ class Native(Engine):
 
     def _version_line(self) -> re.Match:
         try:
-            line = call_solver(["--version"]).stdout.decode(errors="replace").strip()
+            line = _says_of_itself(solver_sha256())
         except SolverError as error:
             raise EngineNotFound(str(error)) from error
         found = VERSION_LINE.fullmatch(line)
@@ -74,3 +75,9 @@ class Native(Engine):
                 f"{self.executable()} is not crossdem-solver: it calls itself {line!r}"
             )
         return found
+
+
+@lru_cache
+def _says_of_itself(sha256: str) -> str:
+    """The line of the solver that has this sum, asked once for all runs."""
+    return call_solver(["--version"]).stdout.decode(errors="replace").strip()

@@ -59,7 +59,7 @@ class Run:
         self.work_dir = self._attempt.work_dir
         self.started: datetime | None = None  # None: reused, or not yet
         self.ending: Ending | None = None
-        self._process: Process | None = None
+        self.process: Process | None = None
 
     def start(self) -> None:
         """Write the input and start the process. Raises EngineNotFound, OSError."""
@@ -72,13 +72,13 @@ class Run:
         self._samples = LineCounter(self.work_dir / self.engine.samples_file)
         self._last_sample = time.monotonic()
         environment = run_folder.environment(self.engine, ranks)
-        self._process = Process(command, self.work_dir, environment, self.work_dir / LOG)
+        self.process = Process(command, self.work_dir, environment, self.work_dir / LOG)
 
     def poll(self, limits: Limits) -> bool:
         """Whether the process has ended. Raises EngineFailure, having ended it, when there is no use in waiting on."""
-        self.ending = self._process.poll()
+        self.ending = self.process.poll()
         if self.ending is None and (overdue := self._overdue(limits)):
-            self._process.kill()
+            self.process.kill()
             raise EngineFailure(f"{overdue} {self._stage()} and was ended")
         return self.ending is not None
 
@@ -88,7 +88,7 @@ class Run:
         if self._samples.update() > lines:
             self._last_sample = time.monotonic()
         share = min(1.0, self._samples.lines / self.engine.lines_in_all(self.case))
-        return share, self._process.wall_s * (1 - share) / share if share > 0 else None
+        return share, self.process.wall_s * (1 - share) / share if share > 0 else None
 
     def read(self) -> Dataset:
         """What a process that has ended left, its gates still to be set. Raises EngineFailure, Declined."""
@@ -142,8 +142,8 @@ class Run:
 
     def stop(self) -> None:
         """End the process, if there is one, and leave nothing."""
-        if self._process:
-            self._process.kill()
+        if self.process:
+            self.process.kill()
         self._attempt.end("stopped")
 
     def finished(self) -> Dataset | None:
@@ -177,7 +177,7 @@ class Run:
         expected_s = self.engine.expected_s(self.case)
         allowed_s = limits.allowed_s(expected_s)
         silent_s = max(limits.silent_s, limits.silent_share * expected_s)
-        if self._process.wall_s > allowed_s:
+        if self.process.wall_s > allowed_s:
             return f"ran past its time limit of {allowed_s:.3g} s"
         if time.monotonic() - self._last_sample > silent_s:
             return f"made no progress for {silent_s:.3g} s"

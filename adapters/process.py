@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+import select
 import shutil
 import signal
 import subprocess
 import time
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -80,6 +83,21 @@ class Process:
             os.killpg(self._process.pid, number)
         except ProcessLookupError:
             pass
+
+
+def wait_for_any(processes: Sequence[Process], at_most_s: float) -> None:
+    """Until one of them has ended, of which none was seen to end before; at once where there is none."""
+    if not processes:
+        return
+    with ExitStack() as descriptors:
+        ends = []
+        try:
+            for process in processes:
+                ends.append(os.pidfd_open(process.id))
+                descriptors.callback(os.close, ends[-1])
+        except OSError:  # containers may forbid it
+            ends = []
+        select.select(ends, [], [], at_most_s)
 
 
 def bound_to_us() -> list[str]:

@@ -15,6 +15,7 @@ from .engine import Declined, EngineFailure, EngineNotFound
 from .engines import get_engine
 from .gates import REFERENCE, with_gates
 from .one_run import Limits, Run
+from .process import wait_for_any
 from .run_folder import RunRequest, run_key
 
 POLL_S = 0.1
@@ -121,7 +122,7 @@ class _Queue:
                 told = time.monotonic()
                 for run in self._running:
                     self._on_progress(run.request, *run.progress())
-            time.sleep(POLL_S)
+            wait_for_any([run.process for run in self._running], POLL_S)
 
     def stop(self) -> None:
         for run in self._running:

@@ -11,15 +11,15 @@ namespace crossdem {
 /// Resultant of the contact forces on one particle: Eqs. (10)-(12).
 struct Load {
   Vector2 force = Vector2::Zero();  // [N]
-  double rim = 0.0;                 // [N], sum of lever x f_s: the moment of Eq. (12) is -radius x rim
-  double moment = 0.0;              // [N m], counter-clockwise, of any other kind
+  // One of the two, as the scheme has it:
+  double rim = 0.0;     // [N], sum of lever x f_s: the moment of Eq. (12) is -radius x rim
+  double moment = 0.0;  // [N m], counter-clockwise
 };
 
 /// Eqs. (12)-(18): what a load does to the velocities within `dt`.
 inline void accelerate(Particles& p, std::size_t i, const Load& load, double gravity, double dt) {
   p.velocity[i] += load.force * (dt / p.mass[i]) - Vector2(0.0, gravity * dt);  // Eqs. (13), (14), (16), (17)
   p.spin[i] -= load.rim * (p.radius[i] * (dt / p.inertia[i]));                  // Eqs. (12), (15), (18)
-  p.spin[i] += load.moment * (dt / p.inertia[i]);
 }
 
 /// Eqs. (22)-(24).

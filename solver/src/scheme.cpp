@@ -15,15 +15,10 @@ bool resists_rolling(const Case& setup) {
   return setup.particle_particle.rolling_friction > 0.0 || setup.particle_wall.rolling_friction > 0.0;
 }
 
-/// Whether the contacts are the paper's; batches know no others.
-bool has_plain_contacts(const Case& setup) {
-  return setup.particle_particle.tensile_strength == 0.0 && !resists_rolling(setup);
-}
-
 /// Of the discs that LIGGGHTS moves by `Motion`.
 template <class Motion>
 std::unique_ptr<Stepper> liggghts(const Case& setup, World& world) {
-  if (has_plain_contacts(setup)) return std::make_unique<BatchedStepper<LiggghtsBatches<Motion>>>(setup, world);
+  if (!resists_rolling(setup)) return std::make_unique<BatchedStepper<LiggghtsBatches<Motion>>>(setup, world);
   return std::make_unique<ConventionalStepper<LiggghtsScheme<Motion>>>(setup, world);
 }
 
@@ -36,8 +31,8 @@ std::unique_ptr<Stepper> make_stepper(const Case& setup, World& world) {
     only_start_differs.initial_displacement = {};
     only_start_differs.inertia = {};
     if (only_start_differs == Readings{}) {
-      if (has_plain_contacts(setup)) return std::make_unique<BatchedStepper<PaperBatches>>(setup, world);
-      return std::make_unique<PaperStepper<OptionsScheme>>(OptionsScheme{}, choice.readings, world);
+      if (resists_rolling(setup)) return std::make_unique<BatchedStepper<PaperBatches<RollingScheme>>>(setup, world);
+      return std::make_unique<BatchedStepper<PaperBatches<PaperScheme>>>(setup, world);
     }
     return std::make_unique<PaperStepper<MixedScheme>>(MixedScheme{{choice.readings}, {choice.readings.integrator}},
                                                        choice.readings, world);

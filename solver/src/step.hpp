@@ -32,6 +32,14 @@ inline double moment_lever(TorqueArm reading, double radius, double overlap) {
   return reading == TorqueArm::radius ? 1.0 : 1.0 - 0.5 * overlap / radius;
 }
 
+/// Of a surface, whose R is the disc's radius.
+inline constexpr double surface_rolling_lever = 1.0;
+
+/// [N], what shear and rolling turn a disc by at its rim: the moment is -radius times that.
+inline double rim_force(const ContactForce& f, double lever, double rolling_lever) {
+  return lever * f.shear + rolling_lever * f.rolling;
+}
+
 /// [J], by the displacements of the step.
 inline double work_of(const ContactForce& f, const RelativeDisplacement& u) {
   return f.normal * u.normal + f.shear * u.shear + f.rolling * u.rolling;
@@ -92,8 +100,8 @@ class Step {
     for (Pair& contact : contacts_.pairs()) {
       PairForce f;
       if (!pair_force(contact, f)) continue;
-      add(contact.i, f.force, f.normal, f.lever_i, -f.rolling_moment);
-      add(contact.j, f.force, -f.normal, f.lever_j, f.rolling_moment);
+      add(contact.i, f.force, f.normal, f.lever_i, f.rolling_lever_i);
+      add(contact.j, f.force, -f.normal, f.lever_j, -f.rolling_lever_j);
     }
     add_in_sums(w_, contacts_.on_surfaces(),
                 [this](OnSurface& contact, SurfaceTotals& totals) { surface_load(contact, totals); });
@@ -109,7 +117,7 @@ class Step {
     for (std::size_t i = 0; i < p_.count(); ++i) {
       for (; pair != contacts_.pairs().end() && pair->i == i; ++pair) {
         PairForce f;
-        if (pair_force(*pair, f)) add(pair->i, f.force, f.normal, f.lever_i, -f.rolling_moment);
+        if (pair_force(*pair, f)) add(pair->i, f.force, f.normal, f.lever_i, f.rolling_lever_i);
       }
       for (; on_surface != contacts_.on_surfaces().end() && on_surface->i == i; ++on_surface)
         surface_load(*on_surface, w_.totals);
@@ -124,7 +132,8 @@ class Step {
     Vector2 normal = Vector2::Zero();  // from i to j
     double lever_i = 0.0;              // of the moment: arm / radius
     double lever_j = 0.0;
-    double rolling_moment = 0.0;  // [N m], on j; i receives the opposite
+    double rolling_lever_i = 0.0;  // r_j / (r_i + r_j): of R = r_i r_j / (r_i + r_j) in radii r_i
+    double rolling_lever_j = 0.0;
   };
 
   void begin() {
@@ -170,10 +179,11 @@ class Step {
       u.damped_normal = velocity.normal * w_.dt;
       u.damped_shear = velocity.shear * w_.dt;
     }
-    const double rolling_radius = p_.radius[i] * p_.radius[j] / reach;
-    u.rolling = rolling_radius * (p_.rotation[i] - p_.rotation[j]);
+    f.rolling_lever_i = p_.radius[j] / reach;
+    f.rolling_lever_j = p_.radius[i] / reach;
+    u.rolling =
+        f.rolling_lever_i * (p_.radius[i] * p_.rotation[i]) - f.rolling_lever_j * (p_.radius[j] * p_.rotation[j]);
     f.force = scheme_.law.force(u, w_.particle_particle, w_.dt, contact.memory);
-    f.rolling_moment = rolling_radius * f.force.rolling;
     w_.contact_work[i] += work_of(f.force, u);
     return true;
   }
@@ -185,18 +195,16 @@ class Step {
     SurfaceForce f;
     if (!surface_force(scheme_.law, w_.surfaces, w_.particle_wall, w_.dt, contact, disc, f)) return;
     w_.contact_work[i] += f.work;
-    totals.add(w_.surfaces, contact.surface, disc.centre,
-               add(i, f.force, f.normal, f.lever, -disc.radius * f.force.rolling));
+    totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever, surface_rolling_lever));
   }
 
   /// Eqs. (10)-(12): the load of one contact on particle i, whose partner lies in direction `normal`. Returns the
   /// force.
   Vector2 add(std::uint32_t i, const ContactForce& force, const Vector2& normal, double lever_i,
-              double rolling_moment) {
+              double rolling_lever_i) {
     Vector2 on_i = received(force, normal);
     w_.loads[i].force += on_i;
-    w_.loads[i].rim += lever_i * force.shear;
-    w_.loads[i].moment += rolling_moment;
+    w_.loads[i].rim += rim_force(force, lever_i, rolling_lever_i);
     return on_i;
   }
 

@@ -42,7 +42,7 @@ BENCHMARK(plain_paper_step)->Apply(bed_sizes);
 template <class Scheme>
 void step(benchmark::State& state, std::string_view instructions) {
   batch::use_instruction_set(instructions);
-  const bool paper = std::is_same_v<Scheme, PaperBatches>;
+  const bool paper = std::is_same_v<Scheme, PaperBatches<PaperScheme>>;
   const bool liggghts = std::is_same_v<Scheme, LiggghtsBatches<LiggghtsVerlet>>;
   const Case setup = case_of(count_of(state), paper ? "paper" : liggghts ? "liggghts" : "yade", paper ? 1e-4 : 5e-5);
   advance(state, setup, [&](World& world) { return make_stepper(setup, world); });
@@ -68,7 +68,7 @@ struct Batches {
       batch.i[k] = close[n].i;
       batch.j[k] = close[n].j;
       for (batch::Column& column : batch.memory) column[k] = 0.0;
-      if constexpr (std::is_same_v<Scheme, PaperBatches>)
+      if constexpr (std::is_same_v<Scheme, PaperBatches<PaperScheme>>)
         batch.memory[0][k] = closer_than(0.0, bed, close[n]) ? 0.1 : not_touching;
     }
   }
@@ -111,7 +111,7 @@ void move(benchmark::State& state, std::string_view instructions) {
       add("add_pair_forces/" + name, add_pair_forces<Scheme>);
       add("move/" + name, move<Scheme>);
     };
-    add_scheme.template operator()<PaperBatches>("paper");
+    add_scheme.template operator()<PaperBatches<PaperScheme>>("paper");
     add_scheme.template operator()<LiggghtsBatches<LiggghtsVerlet>>("liggghts");
     add_scheme.template operator()<YadeBatches<YadeLeapFrog>>("yade");
   }

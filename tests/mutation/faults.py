@@ -130,8 +130,8 @@ FORMULAS = (
         "no moment on the partner",
         LAW,
         STEP,
-        "add(contact.j, f.force, -f.normal, f.lever_j, f.rolling_moment);",
-        "add(contact.j, f.force, -f.normal, 0.0, f.rolling_moment);",
+        "add(contact.j, f.force, -f.normal, f.lever_j, -f.rolling_lever_j);",
+        "add(contact.j, f.force, -f.normal, 0.0, -f.rolling_lever_j);",
     ),
     Fault(
         "radius of one for both",
@@ -239,8 +239,8 @@ RECORDS = (
         RECORD,
         STEP,
         "totals.add(w_.surfaces, contact.surface, disc.centre,\n"
-        "               add(i, f.force, f.normal, f.lever, -disc.radius * f.force.rolling));",
-        "add(i, f.force, f.normal, f.lever, -disc.radius * f.force.rolling);\n"
+        "               add(i, f.force, f.normal, f.lever, surface_rolling_lever));",
+        "add(i, f.force, f.normal, f.lever, surface_rolling_lever);\n"
         "    totals.add(w_.surfaces, contact.surface, disc.centre, -f.force.normal * f.normal);",
     ),
     Fault(

@@ -31,7 +31,12 @@ class Fault:
 # Faults are seeded in the plain steps, so that the copy makes its steps by them: the batches, which users' runs are made
 # by, are held against the plain steps bit for bit (tests/solver/batch_test.cpp).
 PLAIN = {
-    "BatchedStepper<PaperBatches>>(setup, world)": "PaperStepper<PaperScheme>>(PaperScheme{}, choice.readings, world)",
+    "BatchedStepper<PaperBatches<PaperScheme>>>(setup, world)": (
+        "PaperStepper<PaperScheme>>(PaperScheme{}, choice.readings, world)"
+    ),
+    "BatchedStepper<PaperBatches<RollingScheme>>>(setup, world)": (
+        "PaperStepper<RollingScheme>>(RollingScheme{}, choice.readings, world)"
+    ),
     "BatchedStepper<LiggghtsBatches<": "ConventionalStepper<LiggghtsScheme<",
     "BatchedStepper<YadeBatches<": "ConventionalStepper<YadeScheme<",
 }

@@ -38,7 +38,7 @@ Particles gas(std::size_t count) {
   return particles;
 }
 
-std::vector<Start> starts() {
+std::vector<Start> made_starts() {
   std::vector<Start> all;
   for (const std::size_t count : {1, 2, 7, 8, 9, 100})
     all.push_back({"gas", small_case(), gas(count), std::nullopt, 1000});
@@ -50,6 +50,23 @@ std::vector<Start> starts() {
   Particles burst = particles_of(bed, fast);
   for (const double x : {0.029, 0.030}) burst.add(large_radius, large_mass, {x, 0.2}, Vector2::Zero());
   all.push_back({"burst", fast, burst, std::nullopt, 100});
+  return all;
+}
+
+const std::vector<Start>& starts() {
+  static const std::vector<Start> all = made_starts();
+  return all;
+}
+
+/// With joints, of which some break.
+std::vector<Start> joined(std::vector<Start> all) {
+  for (Start& start : all) start.setup.particle_particle.tensile_strength = 0.02;
+  return all;
+}
+
+std::vector<Start> rolling(std::vector<Start> all) {
+  for (Start& start : all)
+    start.setup.particle_particle.rolling_friction = start.setup.particle_wall.rolling_friction = 0.1;
   return all;
 }
 
@@ -82,14 +99,15 @@ std::vector<double> after(const Start& start, std::size_t threads = 1) {
   return state_of(w, stepper);
 }
 
+template <class Scheme>
 class PlainPaper final : public Stepper {
  public:
-  PlainPaper(const Case& setup, World& world) : stepper_(PaperBatches::plain(setup, world)) {}
+  PlainPaper(const Case& setup, World& world) : stepper_(PaperBatches<Scheme>::plain(setup, world)) {}
   void advance(World& world, long steps) override { stepper_.advance(world, steps); }
   [[nodiscard]] double spring_energy(const World& world) const override { return stepper_.spring_energy(world); }
 
  private:
-  PaperStepper<PaperScheme> stepper_;
+  PaperStepper<Scheme> stepper_;
 };
 
 class Batches : public testing::TestWithParam<std::string_view> {
@@ -99,15 +117,34 @@ class Batches : public testing::TestWithParam<std::string_view> {
 
   template <class Scheme, class Plain>
   static void give_the_bits_of() {
+    give_the_bits_from<Scheme, Plain>(starts());
+  }
+
+  template <class Scheme, class Plain>
+  static void give_the_bits_from(const std::vector<Start>& all) {
     EXPECT_EQ(batch::instruction_set(), GetParam());
-    for (const Start& start : starts()) {
+    for (const Start& start : all) {
       EXPECT_EQ(after<Plain>(start), after<BatchedStepper<Scheme>>(start))
           << start.name << " of " << start.particles.count();
     }
   }
 };
 
-TEST_P(Batches, GiveTheBitsOfPlainStepsEqs1To24) { give_the_bits_of<PaperBatches, PlainPaper>(); }
+TEST_P(Batches, GiveTheBitsOfPlainStepsEqs1To24) {
+  give_the_bits_of<PaperBatches<PaperScheme>, PlainPaper<PaperScheme>>();
+}
+
+TEST_P(Batches, GiveTheBitsOfPlainStepsWithJoints) {
+  give_the_bits_from<PaperBatches<PaperScheme>, PlainPaper<PaperScheme>>(joined(starts()));
+}
+
+TEST_P(Batches, GiveTheBitsOfPlainStepsWithRollingResistance) {
+  give_the_bits_from<PaperBatches<RollingScheme>, PlainPaper<RollingScheme>>(rolling(starts()));
+}
+
+TEST_P(Batches, GiveTheBitsOfPlainStepsWithJointsAndRollingResistance) {
+  give_the_bits_from<PaperBatches<RollingScheme>, PlainPaper<RollingScheme>>(rolling(joined(starts())));
+}
 
 TEST_P(Batches, GiveTheBitsOfPlainStepsOfLiggghts) {
   give_the_bits_of<LiggghtsBatches<LiggghtsVerlet>, ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>();
@@ -138,7 +175,7 @@ void threads_give_the_bits_of() {
     EXPECT_EQ(plain, after<BatchedStepper<Scheme>>(start, threads)) << threads;
 }
 
-TEST(Threads, GiveTheBitsOfOne) { threads_give_the_bits_of<PaperBatches, PlainPaper>(); }
+TEST(Threads, GiveTheBitsOfOne) { threads_give_the_bits_of<PaperBatches<PaperScheme>, PlainPaper<PaperScheme>>(); }
 
 TEST(Threads, GiveTheBitsOfOneByTheSchemeOfLiggghts) {
   threads_give_the_bits_of<LiggghtsBatches<LiggghtsVerlet>, ConventionalStepper<LiggghtsScheme<LiggghtsVerlet>>>();

@@ -45,6 +45,9 @@ struct alignas(64) Pairs {
 /// Remembers e_n, or not_touching, and e_s [N].
 using TanakaPairs = Pairs<2>;
 
+/// Remembers e_n, or not_touching, e_s and e_r [N].
+using RollingPairs = Pairs<3>;
+
 /// Remembers x and y of the shear spring [m].
 using LiggghtsPairs = Pairs<2>;
 

@@ -15,8 +15,11 @@ namespace crossdem::batch {
 // Forces of pairs: each brings the memories of `pairs` up to date and adds their forces to `loads`, pair after pair.
 // `discs` and `loads` have an entry for every particle named in `pairs`.
 
-/// Eqs. (1)-(12) by the default readings, as step.hpp and laws/tanaka.hpp.
+/// Eqs. (1)-(12) by the default readings, as step.hpp and laws/tanaka.hpp; with joints where they have a strength, and
+/// with springs against rolling where `pairs` remember them.
 void add_tanaka_forces(std::span<TanakaPairs> pairs, const Disc* discs, Load* loads,
+                       const ContactParameters& parameters, double dt);
+void add_tanaka_forces(std::span<RollingPairs> pairs, const Disc* discs, Load* loads,
                        const ContactParameters& parameters, double dt);
 
 /// As schemes/liggghts.hpp and laws/liggghts_hooke.hpp; `limit_force`: no attraction.

@@ -11,9 +11,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace crossdem::batch::HWY_NAMESPACE {
 
+/// `joins`: whether particles hold together up to a strength T > 0; `rolls`: whether springs resist their rolling.
+template <bool joins, bool rolls>
 class TanakaPairLaw {
  public:
-  static constexpr bool turn_alike = true;
+  static constexpr bool turn_alike = !rolls;
   static constexpr Signs signs{{-1.0, -1.0, 1.0, 1.0}, {1.0, 1.0, 1.0, 0.0}};
   TanakaPairLaw(const ContactParameters& parameters, double dt) : p_(parameters), dt_(dt) {}
 
@@ -22,10 +24,19 @@ class TanakaPairLaw {
     Columns between;
     Vector distance_squared;
     Vector inverse;  // 1 / distance
+    // Where they roll, what Step::pair_force says of it.
+    Vector rolling_lever_i;
+    Vector rolling_lever_j;
+    Vector rolling;  // [m]
   };
 
   static HWY_INLINE Approach approach(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
-    Approach a{between(i, j, discs), hn::Zero(lanes), hn::Zero(lanes)};
+    const Vector zero = hn::Zero(lanes);
+    Approach a{{zero, zero, zero, zero, zero, zero}, zero, zero, zero, zero, zero};
+    if constexpr (rolls)
+      take_rolling(both_of(i, j, discs), a);
+    else
+      a.between = between(i, j, discs);
     const Columns& b = a.between;
     a.distance_squared = hn::Add(hn::Mul(b.x, b.x), hn::Mul(b.y, b.y));
     a.inverse = hn::Div(hn::Set(lanes, 1.0), hn::Sqrt(a.distance_squared));
@@ -43,12 +54,15 @@ class TanakaPairLaw {
     const Vector normal_y = hn::Mul(b.y, a.inverse);
     const Vector u_n = hn::Neg(hn::Add(hn::Mul(b.moves_x, normal_x), hn::Mul(b.moves_y, normal_y)));
     const Vector u_s = hn::Add(hn::Sub(hn::Mul(b.moves_x, normal_y), hn::Mul(b.moves_y, normal_x)), b.turns);
-    const Mask touch = hn::Lt(a.distance_squared, hn::Mul(b.radius, b.radius));
     Vector e_n = hn::Load(lanes, normal_spring);
     Vector e_s = hn::Load(lanes, shear_spring);
     Vector du_n = u_n;
     Vector du_s = u_s;
-    const Mask first = hn::And(touch, hn::Lt(e_n, zero));
+    const Mask apart = joins ? hn::Eq(e_n, hn::Set(lanes, not_touching)) : hn::Lt(e_n, zero);
+    Vector reach = b.radius;
+    if constexpr (joins) reach = hn::IfThenElse(apart, reach, hn::Add(reach, hn::Set(lanes, p_.joint_stretch())));
+    const Mask touch = hn::Lt(a.distance_squared, hn::Mul(reach, reach));
+    const Mask first = hn::And(touch, apart);
     if (HWY_UNLIKELY(!hn::AllFalse(lanes, first))) {  // Eqs. (3), (4)
       const Vector overlap = hn::Sub(b.radius, hn::Sqrt(a.distance_squared));
       const Vector share = hn::IfThenElseZero(hn::Gt(du_n, zero), hn::Min(hn::Div(overlap, du_n), hn::Set(lanes, 1.0)));
@@ -58,23 +72,50 @@ class TanakaPairLaw {
       e_s = hn::IfThenElse(first, zero, e_s);
     }
     e_n = hn::Add(e_n, hn::Mul(hn::Set(lanes, p_.normal_stiffness), du_n));  // Eq. (5)
-    const Mask acts = hn::AndNot(hn::Lt(e_n, zero), touch);                  // Eq. (8)
+    const Vector strength = joins ? hn::Set(lanes, p_.tensile_strength) : zero;
+    const Mask acts = hn::AndNot(hn::Lt(e_n, hn::Neg(strength)), touch);  // Eq. (8)
     const Vector dashpot_n = hn::Mul(hn::Set(lanes, p_.normal_damping / dt_), du_n);
     const Vector dashpot_s = hn::Mul(hn::Set(lanes, p_.shear_damping / dt_), du_s);
     e_s = hn::Add(e_s, hn::Mul(hn::Set(lanes, p_.shear_stiffness), du_s));
-    const Vector slip_force = hn::Mul(hn::Set(lanes, p_.friction), e_n);
+    const Vector pressed = joins ? hn::Add(e_n, strength) : e_n;
+    const Vector slip_force = hn::Mul(hn::Set(lanes, p_.friction), pressed);
     const Mask slips = hn::Gt(hn::Abs(e_s), slip_force);
     const Vector slipping = hn::CopySign(slip_force, e_s);                                                  // Eq. (9)
     const Vector f_n = hn::IfThenElseZero(acts, hn::Add(e_n, dashpot_n));                                   // Eq. (6)
     const Vector f_s = hn::IfThenElseZero(acts, hn::IfThenElse(slips, slipping, hn::Add(e_s, dashpot_s)));  // Eq. (7)
     hn::Store(hn::IfThenElse(acts, e_n, hn::Set(lanes, not_touching)), lanes, normal_spring);
     hn::Store(hn::IfThenElseZero(acts, hn::IfThenElse(slips, slipping, e_s)), lanes, shear_spring);
-    return {hn::Sub(hn::Mul(f_n, normal_x), hn::Mul(f_s, normal_y)),
-            hn::Add(hn::Mul(f_n, normal_y), hn::Mul(f_s, normal_x)), f_s, f_s,
-            hn::Add(hn::Mul(f_n, u_n), hn::Mul(f_s, u_s))};
+    Forces f{hn::Sub(hn::Mul(f_n, normal_x), hn::Mul(f_s, normal_y)),
+             hn::Add(hn::Mul(f_n, normal_y), hn::Mul(f_s, normal_x)), f_s, f_s,
+             hn::Add(hn::Mul(f_n, u_n), hn::Mul(f_s, u_s))};
+    if constexpr (rolls) add_rolling(a, memory(2), first, acts, pressed, f);
+    return f;
   }
 
  private:
+  static HWY_INLINE void take_rolling(const Both& b, Approach& a) {
+    const Vector reach = hn::Add(b.radius_i, b.radius_j);
+    a.between = {hn::Neg(b.x), hn::Neg(b.y), hn::Neg(b.moves_x), hn::Neg(b.moves_y), hn::Add(b.turns_i, b.turns_j),
+                 reach};
+    a.rolling_lever_i = hn::Div(b.radius_j, reach);
+    a.rolling_lever_j = hn::Div(b.radius_i, reach);
+    a.rolling = hn::Sub(hn::Mul(a.rolling_lever_i, b.turns_i), hn::Mul(a.rolling_lever_j, b.turns_j));
+  }
+
+  /// The spring against rolling, in its memory and in the forces `f`.
+  HWY_INLINE void add_rolling(const Approach& a, double* rolling_spring, Mask first, Mask acts, Vector pressed,
+                              Forces& f) const {
+    Vector e_r = hn::IfThenZeroElse(first, hn::Load(lanes, rolling_spring));
+    e_r = hn::Add(e_r, hn::Mul(hn::Set(lanes, p_.shear_stiffness), a.rolling));
+    const Vector cap = hn::Mul(hn::Set(lanes, p_.rolling_friction), pressed);
+    e_r = hn::IfThenElse(hn::Gt(hn::Abs(e_r), cap), hn::CopySign(cap, e_r), e_r);
+    const Vector f_r = hn::IfThenElseZero(acts, e_r);
+    hn::Store(f_r, lanes, rolling_spring);
+    f.turning_i = hn::Add(f.turning_i, hn::Mul(a.rolling_lever_i, f_r));
+    f.turning_j = hn::Sub(f.turning_j, hn::Mul(a.rolling_lever_j, f_r));
+    f.work = hn::Add(f.work, hn::Mul(f_r, a.rolling));
+  }
+
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
   /// i times minus one or one is exact, and so is the sum what Sub and Add give.
   static HWY_INLINE Columns between(const std::uint32_t* i, const std::uint32_t* j, const Disc* discs) {
@@ -98,9 +139,23 @@ class TanakaPairLaw {
   double dt_;
 };
 
+template <bool rolls, class Batch>
+void add_forces(std::span<Batch> pairs, const Disc* discs, Load* loads, const ContactParameters& parameters,
+                double dt) {
+  if (parameters.tensile_strength > 0.0)
+    add_pair_forces(TanakaPairLaw<true, rolls>(parameters, dt), pairs, discs, loads);
+  else
+    add_pair_forces(TanakaPairLaw<false, rolls>(parameters, dt), pairs, discs, loads);
+}
+
 void AddTanakaForces(std::span<TanakaPairs> pairs, const Disc* discs, Load* loads, const ContactParameters& parameters,
                      double dt) {
-  add_pair_forces(TanakaPairLaw(parameters, dt), pairs, discs, loads);
+  add_forces<false>(pairs, discs, loads, parameters, dt);
+}
+
+void AddRollingForces(std::span<RollingPairs> pairs, const Disc* discs, Load* loads,
+                      const ContactParameters& parameters, double dt) {
+  add_forces<true>(pairs, discs, loads, parameters, dt);
 }
 
 Moved MoveAveraged(std::size_t particles, AveragedGroup* groups, Disc* discs, Load* loads, double gravity,
@@ -138,11 +193,17 @@ HWY_AFTER_NAMESPACE();
 namespace crossdem::batch {
 
 HWY_EXPORT(AddTanakaForces);
+HWY_EXPORT(AddRollingForces);
 HWY_EXPORT(MoveAveraged);
 
 void add_tanaka_forces(std::span<TanakaPairs> pairs, const Disc* discs, Load* loads,
                        const ContactParameters& parameters, double dt) {
   HWY_DYNAMIC_DISPATCH(AddTanakaForces)(pairs, discs, loads, parameters, dt);
+}
+
+void add_tanaka_forces(std::span<RollingPairs> pairs, const Disc* discs, Load* loads,
+                       const ContactParameters& parameters, double dt) {
+  HWY_DYNAMIC_DISPATCH(AddRollingForces)(pairs, discs, loads, parameters, dt);
 }
 
 Moved move_averaged(std::size_t particles, AveragedGroup* groups, Disc* discs, Load* loads, double gravity, double dt) {

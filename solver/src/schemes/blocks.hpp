@@ -92,8 +92,8 @@ class Blocks {
     pairs_.resize(batches);
     discs_.resize(lone_disc(blocks_.size()));
     for (std::size_t number = 0; number < blocks_.size(); ++number) {
-      discs_[lone_disc(number)].x = nowhere;
-      discs_[lone_disc(number) + 1].x = -nowhere;
+      discs_[lone_disc(number)] = {.x = nowhere, .radius = 1.0, .radius_again = 1.0};
+      discs_[lone_disc(number) + 1] = {.x = -nowhere, .radius = 1.0, .radius_again = 1.0};
     }
     loads_.resize(discs_.size());
   }

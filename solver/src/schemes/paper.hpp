@@ -13,8 +13,8 @@ struct PaperScheme {
   AveragedDisplacement integrator;
 };
 
-/// The same with joints or rolling resistance.
-struct OptionsScheme {
+/// The same with rolling resistance.
+struct RollingScheme {
   using Spring = RollingContactSpring;
   TanakaLaw<DefaultReadings> law;
   AveragedDisplacement integrator;

@@ -2,6 +2,7 @@
 // The paper's scheme by the default readings, in batches.
 
 #include <span>
+#include <type_traits>
 
 #include "../batch/kernels.hpp"
 #include "paper.hpp"
@@ -12,11 +13,15 @@ namespace crossdem {
 /// that one of the batches, which ends with it, holds the forces of one step and the motion of the next. Of a step's
 /// impulses, `share_before` is that of the forces at its start, `share_after` that of those at its end. `marks`:
 /// whether its groups remember where particles were when the code made lists of its own.
+template <class PlainScheme>
 class PaperBatches {
+  using Spring = typename PlainScheme::Spring;
+  static constexpr bool rolls = requires(Spring spring) { spring.rolling; };
+
  public:
-  using Plain = PaperStepper<PaperScheme>;
+  using Plain = PaperStepper<PlainScheme>;
   using Group = batch::AveragedGroup;
-  using Pairs = batch::TanakaPairs;
+  using Pairs = std::conditional_t<rolls, batch::RollingPairs, batch::TanakaPairs>;
   /// The world's bar is all it takes; see ConventionalScheme.
   struct OwnBar {
     [[nodiscard]] static bool must_list(double) { return false; }
@@ -28,7 +33,7 @@ class PaperBatches {
   static constexpr double share_before = 0.0;
   static constexpr double share_after = 1.0;
 
-  static Plain plain(const Case& setup, World& world) { return {PaperScheme{}, setup.scheme.readings, world}; }
+  static Plain plain(const Case& setup, World& world) { return {PlainScheme{}, setup.scheme.readings, world}; }
   explicit PaperBatches(Plain&) {}
   static OwnBar& bar(Plain&) {
     static OwnBar none;
@@ -57,14 +62,24 @@ class PaperBatches {
     p.rotation[i] = group.rotation[k];
   }
 
-  static std::array<double, 2> numbers(const ContactSpring& spring) { return {spring.normal, spring.shear}; }
-  static ContactSpring memory(const std::array<double, 2>& numbers) { return {numbers[0], numbers[1]}; }
+  static auto numbers(const Spring& spring) {
+    if constexpr (rolls)
+      return std::array{spring.normal, spring.shear, spring.rolling};
+    else
+      return std::array{spring.normal, spring.shear};
+  }
+  static Spring memory(const auto& numbers) {
+    if constexpr (rolls)
+      return {{numbers[0], numbers[1]}, numbers[2]};
+    else
+      return {numbers[0], numbers[1]};
+  }
 
   static void add_pair_forces(const World& w, std::span<Pairs> pairs, const batch::Disc* discs, batch::Load* loads) {
     batch::add_tanaka_forces(pairs, discs, loads, w.particle_particle, w.dt);
   }
 
-  static void surface(const World& w, const Surfaces& surfaces, const OwnBar&, SurfaceContact<ContactSpring>& contact,
+  static void surface(const World& w, const Surfaces& surfaces, const OwnBar&, SurfaceContact<Spring>& contact,
                       const batch::Disc& disc, const Group& group, batch::Load& load, SurfaceTotals& totals) {
     const std::size_t k = contact.i % batch::width;
     const DiscInMotion motion{{disc.x, disc.y},
@@ -78,7 +93,7 @@ class PaperBatches {
     const Vector2 on_disc = received(f.force, f.normal);
     load.force_x += on_disc.x();
     load.force_y += on_disc.y();
-    load.turning += f.lever * f.force.shear;
+    load.turning += rim_force(f.force, f.lever, surface_rolling_lever);
     load.work += f.work;
     totals.add(surfaces, contact.surface, motion.centre, on_disc);
   }
