@@ -25,3 +25,4 @@ class ExitCode(IntEnum):
     BUG = 70  # EX_SOFTWARE of sysexits.h
     SYSTEM = 74  # EX_IOERR: the system refused a file or a process
     INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+    TERMINATED = 143  # 128 + SIGTERM

@@ -22,6 +22,7 @@ from . import bench_options, commands, options
 from .runs import TIERS
 from .ingredients import TARGETS
 from .doctor import doctor as examine
+from .init_ci import init_ci as write_ci
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -63,6 +64,32 @@ def conform(**arguments):
     ladder that differs ends it before the bed.
     """
     return commands.conform(**arguments)
+
+
+@cli.command("init-ci")
+@click.argument("case", metavar="[CASE]", required=False)
+@click.option("--engine", metavar="FILE", help="Your code's description, as `conform` takes it.")
+@click.option(
+    "--source",
+    metavar="ADDRESS#TAG",
+    help="Where a workflow clones crossdem from, or the folder in which your repository has it.  [default: this checkout's]",
+)
+@click.option("--tier", type=click.Choice(list(TIERS)), default="smoke", show_default=True)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("."),
+    show_default=True,
+    help="The top folder of your repository.",
+)
+@click.option("--force", is_flag=True, help="Replace files that are there.")
+def init_ci(case, engine, source, tier, out, force):
+    """Write a workflow of GitHub Actions and a CTest snippet that check at every push.
+
+    With --engine they say where your code stands, else whether the codes agree on CASE. Paths are those in your
+    repository. docs/ci.md says more.
+    """
+    return write_ci(case, engine, source, tier, out, force)
 
 
 @cli.command()
@@ -331,12 +358,19 @@ def doctor():
 
 def main(arguments: list[str] | None = None) -> int:
     """Runs a command; returns its exit code. No exception leaves it."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the engines then, too
+    terminated = []
+
+    def end_as_by_ctrl_c(*_):  # and with that the engines
+        terminated.append(True)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, end_as_by_ctrl_c)
     try:
         return cli.main(arguments, prog_name="crossdem", standalone_mode=False) or ExitCode.AGREES
     except click.Abort:
-        click.echo("interrupted", err=True)
-        return ExitCode.INTERRUPTED
+        kept = "what is finished is kept, and the same command goes on from there"
+        click.echo(f"interrupted; {kept}", err=True)
+        return ExitCode.TERMINATED if terminated else ExitCode.INTERRUPTED
     except click.ClickException as error:
         error.show()
         return ExitCode.BAD_INPUT

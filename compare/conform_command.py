@@ -30,8 +30,26 @@ MICRO = RECORDS.parent / "micro"
 def conform(
     engine: str, case: Case, tier: str, bed_all_the_same: bool, workspace: Workspace, jobs: int
 ) -> ExitCode:
-    """Raises EngineNotFound for a code that does not say its version, CaseError for `case` without a record."""
+    """Raises as `examine`."""
     console = Console()
+    found, page = examine(engine, case, tier, bed_all_the_same, workspace, jobs, console)
+    print_conformity(found, page)
+    return found.exit_code
+
+
+def examine(
+    engine: str,
+    case: Case,
+    tier: str,
+    bed_all_the_same: bool,
+    workspace: Workspace,
+    jobs: int,
+    console: Console,
+) -> tuple[Conformity, Path]:
+    """Where it stands, and the path of the page that says so.
+
+    Raises EngineNotFound for a code that does not say its version, CaseError for `case` without a record.
+    """
     version = get_engine(engine).version()
     record = find_record(case, RECORDS)
     plans = load_plans(MICRO, [engine], (), jobs)
@@ -41,9 +59,7 @@ def conform(
     bed = None if why else _bed(engine, case, record, tier, workspace, jobs, console)
     particles = {plan.case.name: plan.case.resolved["particles"]["count"] for plan in plans}
     found = Conformity(engine, version, ladder, particles, bed, why, tier)
-    page = write_conformity(found, workspace.root)
-    print_conformity(found, page)
-    return found.exit_code
+    return found, write_conformity(found, workspace.root)
 
 
 def _bed(engine, case, record, tier, workspace, jobs, console) -> Comparison:

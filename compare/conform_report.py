@@ -1,4 +1,4 @@
-"""Where a user's code stands, for people and programs: conform.html, conform.json, badge.json and badge.svg."""
+"""Where a user's code stands, for people and programs: conform.html, conform.md, conform.json, badge.json and badge.svg."""
 
 from __future__ import annotations
 
@@ -30,12 +30,14 @@ TONES = {
 
 
 def write_conformity(found: Conformity, folder: Path) -> Path:
-    """Write the four files into `folder`, each whole or not at all; returns the path of the page, written last."""
+    """Write the five files into `folder`, each whole or not at all; returns the path of the page, written last."""
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / "conform.json", _json(_record(found)))
     write_whole(folder / "badge.json", _json(badge(found)))
     write_whole(folder / "badge.svg", render("badge.svg", _badge_values(found)).encode())
-    write_whole(folder / "conform.html", render("conform.html", _values(found)).encode())
+    values = _values(found)
+    write_whole(folder / "conform.md", render("conform.md", values).encode())
+    write_whole(folder / "conform.html", render("conform.html", values).encode())
     return folder / "conform.html"
 
 

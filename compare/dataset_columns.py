@@ -31,6 +31,57 @@ ABOUT_COLUMNS = {
     "packing_sha256": "of the packing.csv that it started from",
     "content_sha256": "of all numbers in motion.h5 and resistance.csv, whatever wrote these files",
 }
+IMPULSE = "impulse that the particles have received since the start"
+_WALLS = {
+    "left_wall": "from the left wall",
+    "right_wall": "from the right wall",
+    "floor": "from the floor",
+    "bar": "from the bar",
+    "weight": "from their weight",
+}
+LEDGER = {
+    "time_s": "since the rest was over, as in resistance.csv; the ledgers count from the start of the rest",
+    **{f"momentum_change_{axis}_Ns": f"of the sum of m v, {axis}" for axis in "xy"},
+    **{
+        f"{name}_{axis}_Ns": f"{IMPULSE} {whence}, {axis}"
+        for name, whence in _WALLS.items()
+        for axis in "xy"
+    },
+    **{
+        f"residual_{axis}_Ns": f"momentum_change less all impulses, {axis}: rounding"
+        for axis in "xy"
+    },
+    "kinetic_J": "energy of translation and rotation, now",
+    "spring_J": "energy in the springs of all contacts, now",
+    "potential_change_J": "of the sum of m g y, since the start",
+    "bar_work_J": "done by the bar on the particles, since the start",
+    "contact_work_J": "taken up by contacts, since the start: sum of force times relative displacement",
+    "dissipated_J": "contact_work less the change of spring: lost in dashpots and in slip",
+    "integration_J": "added by the integrator itself: change of kinetic, potential_change and contact_work less bar_work",
+}
+MANIFEST = {
+    "schema_version": "of this file",
+    "case_name": "name in case.json",
+    "case_hash": "SHA-256 of inputs/case.json",
+    "packing_hash": "SHA-256 of inputs/packing.csv",
+    "seed": RUN_COLUMNS["seed"],
+    "twin": RUN_COLUMNS["twin"],
+    "engine": RUN_COLUMNS["engine"],
+    "engine_version": ABOUT_COLUMNS["engine_version"],
+    "compiler": "and its flags, where the code tells them",
+    "time_step_s": ABOUT_COLUMNS["time_step_s"],
+    "command": "that made the run, in its folder",
+    "started_utc": "when it was started",
+    "wall_s": "how long it ran by the clock",
+    "cpu_s": "processor time of all its processes",
+    "particles": ABOUT_COLUMNS["particles"],
+    "frames": ABOUT_COLUMNS["frames"],
+    "samples": ABOUT_COLUMNS["samples"],
+    "machine": "kind of processor and C library",
+    "limitations": "in which the code departs from the paper's scheme",
+    "gates": "what the run had to pass before it was compared",
+    "run_key": "names the run: a hash of case, packing, code and adapter",
+}
 BIN = "mean resistance over 1 cm of depth about this depth [m]"
 
 
@@ -57,12 +108,21 @@ def tables(depths_m: list[float]) -> dict[str, list[Column]]:
         "packings/*/packing.csv": _columns(PACKING),
         "runs/*/inputs/packing.csv": _columns(PACKING),
         "runs/*/resistance.csv": _columns(RESISTANCE),
+        "runs/*/ledger.csv": _columns(LEDGER),
         "tables/runs.csv": run + _columns(ABOUT_COLUMNS),
         "tables/endpoints.csv": run
         + [Column(one.name, one.unit or "1", one.definition) for one in QUANTITIES.values()],
         "tables/resistance_per_cm.csv": run
         + [Column(str(depth_m), "N", BIN) for depth_m in depths_m],
     }
+
+
+def manifest_keys() -> list[Column]:
+    """The keys of a run's manifest.json."""
+    return [
+        Column(name, _unit(name) if name.endswith("_s") else "", text)
+        for name, text in MANIFEST.items()
+    ]
 
 
 def motion_columns(path: Path) -> list[Column]:

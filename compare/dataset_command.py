@@ -11,6 +11,7 @@ from rich.console import Console
 from crossdem import ExitCode
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.engines import attached
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.workspace import Workspace, WorkspaceError
 
@@ -58,7 +59,10 @@ def build(
         folders |= dict.fromkeys(runs.folders)
     horizon = horizon_of_runs(case, engines, {}, workspace, here(jobs, profile), Console())
     comparison = compare_runs(case, map(Dataset.read, folders), horizon=horizon)
-    words = ["dataset", "build", case_file, "--engines", ",".join(engines), "--seeds", seeds]
+    own = {name: description for name in engines for description in attached([name])}
+    ours = [name for name in engines if name not in own]
+    words = ["dataset", "build", Path(case_file).name, "--engines", ",".join(ours), "--seeds", seeds]
+    words += [word for description in own.values() for word in ("--engine", Path(description).name)]
     words += ["--native-seeds", native_seeds, "--twins", twins]
     words += [word for change in overrides for word in ("--set", change)]
     words += ["--mpi-ranks", ranks] if ranks > 1 else []

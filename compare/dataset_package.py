@@ -16,7 +16,7 @@ from crossdem.adapters.workspace import WorkspaceError
 from . import dataset_documents as documents
 from . import recorded_tables
 from .comparison import Comparison
-from .dataset_columns import ABOUT_COLUMNS, RUN_COLUMNS, motion_columns, tables
+from .dataset_columns import ABOUT_COLUMNS, RUN_COLUMNS, manifest_keys, motion_columns, tables
 from .dataset_crate import METADATA, crate, ended
 from .dataset_sums import SUMS, files_in, sha256_of, write_sums
 from .dataset_verify import DESCRIPTOR, faults_of_package
@@ -94,7 +94,10 @@ def _fill(
     manifests = _by_folder(ensemble, runs)
     about = _about(case, comparison, list(manifests.values()), command)
     columns = tables(list(ensemble.profiles.columns))
-    motion = {"runs/*/motion.h5": motion_columns(runs[0] / "motion.h5")}
+    others = {
+        "runs/*/motion.h5": motion_columns(runs[0] / "motion.h5"),
+        "runs/*/manifest.json": manifest_keys(),
+    }
 
     (folder / "case.json").write_bytes(case.canonical)
     _write(folder / "tables" / "runs.csv", _runs_table(manifests).to_csv(index=False))
@@ -102,7 +105,7 @@ def _fill(
     profiles = recorded_tables.profiles_text(ensemble.profiles)
     _write(folder / "tables" / "resistance_per_cm.csv", profiles)
     _write(folder / "comparison" / "report.json", record_text(comparison))
-    _write(folder / "columns.csv", documents.dictionary(columns | motion))
+    _write(folder / "columns.csv", documents.dictionary(columns | others))
     _write(folder / "README.md", documents.readme(about))
     _write(folder / "LICENSE", documents.license_text())
     _write(folder / "CITATION.cff", documents.citation(about))

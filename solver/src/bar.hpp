@@ -58,6 +58,11 @@ class Bar {
     return beside || below;
   }
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(start_, tip_, displacement_, steps_, moving_);
+  }
+
  private:
   BarGeometry geometry_;
   double start_;  // [m], tip before the bar moves

@@ -42,6 +42,16 @@ struct RollingContactSpring : ContactSpring {
   double rolling = 0.0;  // e_r [N]
 };
 
+template <class Archive>
+void serialize(Archive& archive, ContactSpring& spring) {
+  archive(spring.normal, spring.shear);
+}
+
+template <class Archive>
+void serialize(Archive& archive, RollingContactSpring& spring) {
+  archive(spring.normal, spring.shear, spring.rolling);
+}
+
 template <class Law>
 concept ContactLaw = requires(const Law& law, RelativeDisplacement u, const ContactParameters& parameters, double dt,
                               RollingContactSpring& spring) {

@@ -28,6 +28,16 @@ struct SurfaceContact {
   [[nodiscard]] ParticlePair key() const { return {i, static_cast<std::uint32_t>(surface)}; }
 };
 
+template <class Archive, class Memory>
+void serialize(Archive& archive, PairContact<Memory>& contact) {
+  archive(contact.i, contact.j, contact.memory);
+}
+
+template <class Archive, class Memory>
+void serialize(Archive& archive, SurfaceContact<Memory>& contact) {
+  archive(contact.i, contact.surface, contact.memory);
+}
+
 /// Whether particle and surface are closer than `gap` [m].
 inline bool closer_than(double gap, const Particles& particles, const Surfaces& surfaces, std::uint32_t i,
                         Surface surface) {
@@ -112,6 +122,13 @@ class Contacts {
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
   [[nodiscard]] const std::vector<Vector2>& listed_at() const { return listed_at_; }
   [[nodiscard]] const std::vector<OnSurface>& on_surfaces() const { return on_surfaces_; }
+
+  /// The list as it is; the candidates for the next one are searched anew.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(skin_, pairs_, on_surfaces_, listed_at_, bar_listed_at_, listed_steps_);
+    searched_at_.clear();
+  }
 
  private:
   void search(const Particles& particles, const Surfaces& surfaces, Crew& crew) {

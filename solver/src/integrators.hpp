@@ -16,6 +16,11 @@ struct Load {
   double moment = 0.0;  // [N m], counter-clockwise
 };
 
+template <class Archive>
+void serialize(Archive& archive, Load& load) {
+  archive(load.force, load.rim, load.moment);
+}
+
 /// Eqs. (12)-(18): what a load does to the velocities within `dt`.
 inline void accelerate(Particles& p, std::size_t i, const Load& load, double gravity, double dt) {
   p.velocity[i] += load.force * (dt / p.mass[i]) - Vector2(0.0, gravity * dt);  // Eqs. (13), (14), (16), (17)

@@ -32,6 +32,11 @@ class ListSkin {
     now_ = std::clamp(best, least * diameter_, most * diameter_);
   }
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(now_);
+  }
+
  private:
   ListSkin(double skin, double reserve) : now_(skin), reserve_(reserve) {}
 

@@ -52,6 +52,7 @@ struct Arguments {
   std::uint64_t seed = 1;
   std::optional<long> steps;
   std::size_t threads = 1;
+  std::optional<double> checkpoint_every;  // [s]
 };
 
 void resolve(const Arguments& given) {
@@ -68,8 +69,8 @@ void pack(const Arguments& given) {
 void run(const Arguments& given) {
   const crossdem::Case setup = load(given.case_file, given.shown_name);
   crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
-  claim_folder(given.output);
-  crossdem::run(setup, std::move(packing), given.output, given.threads);
+  if (!given.checkpoint_every || !crossdem::can_be_carried_on(given.output)) claim_folder(given.output);
+  crossdem::run(setup, std::move(packing), given.output, given.threads, given.checkpoint_every);
 }
 
 void measure(const Arguments& given) {
@@ -106,6 +107,11 @@ int command_line(int argc, char** argv) {
   CLI::App* runner = add_command("run", "write motion.h5, resistance.csv, ledger.csv and, at the end, run.json", run);
   runner->add_option("--packing", given.packing_file, "packing.csv, with packing.json beside it")->required();
   runner->add_option("--output", given.output, "folder to write into")->required();
+  runner
+      ->add_option("--checkpoint-every", given.checkpoint_every,
+                   "keep a checkpoint in the folder, renewed after so many seconds: a run that was cut short goes on "
+                   "from there when the same command is given again, to the same bits")
+      ->check(CLI::NonNegativeNumber);
   CLI::App* measurer = add_command("measure", "print as JSON how long the steps of a run take; write nothing", measure);
   measurer->add_option("--packing", given.packing_file, "packing.csv, with packing.json beside it")->required();
   measurer->add_option("--steps", given.steps, "only so many, from the first on")

@@ -2,6 +2,7 @@
 // What a run leaves behind: frames of motion in H5MD, rows of resistance and of the ledgers as CSV.
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "crossdem/simulation.hpp"
@@ -25,11 +26,31 @@ class MotionFile {
   std::unique_ptr<File> file_;
 };
 
+/// frames.f64: the same frames, of a run that may be cut short at any moment; what is on its way into a file in HDF5
+/// then may take all of it along. Doubles, one frame behind the other.
+class FrameSpool {
+ public:
+  /// Goes on behind the first `frames` of what is there. Throws FileError where there are fewer.
+  FrameSpool(const std::filesystem::path& path, std::size_t particles, long frames);
+
+  void frame(long step, double time, std::optional<double> bar_tip, const Particles& particles);
+  /// All of them, from the first on.
+  void copy_to(MotionFile& motion);
+
+ private:
+  std::filesystem::path path_;
+  std::size_t particles_;
+  long frames_;
+  std::fstream file_;
+};
+
 /// resistance.csv: force of the particles on the bar, +y up.
 class ResistanceFile {
  public:
-  explicit ResistanceFile(const std::filesystem::path& path);
+  /// Both go on behind the first `keep` bytes of what is there.
+  explicit ResistanceFile(const std::filesystem::path& path, std::uintmax_t keep = 0);
   void row(double time, double depth, const Simulation& simulation);
+  [[nodiscard]] std::uintmax_t bytes() const { return file_.bytes(); }
 
  private:
   LineFile file_;
@@ -38,8 +59,9 @@ class ResistanceFile {
 /// ledger.csv: the momentum and energy accounts.
 class LedgerFile {
  public:
-  explicit LedgerFile(const std::filesystem::path& path);
+  explicit LedgerFile(const std::filesystem::path& path, std::uintmax_t keep = 0);
   void row(double time, const Simulation& simulation);
+  [[nodiscard]] std::uintmax_t bytes() const { return file_.bytes(); }
 
  private:
   LineFile file_;

@@ -1,58 +1,171 @@
 #include "crossdem/run.hpp"
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "checkpoint.hpp"
 #include "crossdem/version.hpp"
 #include "recorder.hpp"
 
 namespace crossdem {
+namespace {
 
-void run(const Case& setup, Packing packing, const std::filesystem::path& folder, std::size_t threads) {
-  const long total = setup.time.steps_in(setup.time.penetration);
-  const long per_sample = setup.time.steps_in(setup.time.sample_interval);
-  const long per_frame = setup.time.steps_in(setup.time.frame_interval);
-  const long between_outputs = std::gcd(per_sample, per_frame);
+/// The files of a run, as far as `progress` says.
+class Recording {
+ public:
+  /// `spools`: the run may be cut short and carried on.
+  Recording(const Case& setup, const std::filesystem::path& folder, const Particles& particles, Progress& progress,
+            bool spools)
+      : setup_(setup),
+        folder_(folder),
+        progress_(progress),
+        resistance_(folder / "resistance.csv", progress.resistance_bytes),
+        ledger_(folder / "ledger.csv", progress.ledger_bytes) {
+    if (spools)
+      spool_.emplace(folder / spool, particles.count(), progress.frames);
+    else
+      motion_.emplace(folder / motion, setup, particles);
+  }
 
+  /// What is due `step` steps after the rest.
+  void record(long step, const Simulation& simulation) {
+    const TimeControl& time = setup_.time;
+    // Times come from the count of intervals, not of steps: engines with other time steps must write the same times.
+    if (step % time.steps_in(time.sample_interval) == 0) {
+      const double now = static_cast<double>(progress_.samples) * time.sample_interval;
+      const double bar_speed = setup_.bar ? setup_.bar->speed : 0.0;
+      resistance_.row(now, bar_speed * now, simulation);
+      ledger_.row(now, simulation);
+      ++progress_.samples;
+    }
+    if (step % time.steps_in(time.frame_interval) == 0) {
+      const double now = static_cast<double>(progress_.frames) * time.frame_interval;
+      if (spool_)
+        spool_->frame(step, now, simulation.bar_tip(), simulation.particles());
+      else
+        motion_->frame(step, now, simulation.bar_tip(), simulation.particles());
+      ++progress_.frames;
+    }
+    progress_.recorded = step;
+    progress_.resistance_bytes = resistance_.bytes();
+    progress_.ledger_bytes = ledger_.bytes();
+  }
+
+  /// Makes motion.h5 of the frames that were spooled.
+  void make_motion(const Particles& particles) {
+    if (!spool_) return;
+    motion_.emplace(folder_ / motion, setup_, particles);
+    spool_->copy_to(*motion_);
+    motion_.reset();
+  }
+
+  void remove_spool() {
+    std::error_code none;
+    if (spool_) std::filesystem::remove(folder_ / spool, none);
+  }
+
+ private:
+  static constexpr const char* motion = "motion.h5";
+  static constexpr const char* spool = "frames.f64";
+
+  const Case& setup_;
+  std::filesystem::path folder_;
+  Progress& progress_;
+  ResistanceFile resistance_;
+  LedgerFile ledger_;
+  std::optional<MotionFile> motion_;
+  std::optional<FrameSpool> spool_;
+};
+
+/// Writes a checkpoint when one is due; never without an interval.
+class Checkpoints {
+ public:
+  Checkpoints(const CheckpointFile& file, std::optional<double> every) : file_(file), every_(every) {}
+
+  void look(const Progress& progress, const Simulation& simulation) {
+    if (!every_ || std::chrono::duration<double>(Clock::now() - latest_).count() < *every_) return;
+    file_.write(progress, simulation);
+    latest_ = Clock::now();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const CheckpointFile& file_;
+  std::optional<double> every_;  // [s]
+  Clock::time_point latest_ = Clock::now();
+};
+
+void write_end(const Case& setup, const std::filesystem::path& folder, const Progress& progress,
+               const Simulation& simulation) {
+  const nlohmann::json done = {{"completed", true},
+                               {"engine", "native"},
+                               {"version", version_line()},
+                               {"rest_steps", setup.time.steps_in(setup.time.rest)},
+                               {"penetration_steps", progress.recorded},
+                               {"particles", simulation.particles().count()},
+                               {"frames", progress.frames},
+                               {"samples", progress.samples}};
+  LineFile(folder / "run.json").line(done.dump(2));
+}
+
+}  // namespace
+
+bool can_be_carried_on(const std::filesystem::path& folder) {
+  CheckpointFile::remove_unfinished(folder);
+  return CheckpointFile::is_in(folder);
+}
+
+void run(const Case& setup, Packing packing, const std::filesystem::path& folder, std::size_t threads,
+         std::optional<double> checkpoint_every) {
+  const TimeControl& time = setup.time;
+  const long rest = time.steps_in(time.rest);
+  const long total = time.steps_in(time.penetration);
+  const long per_sample = time.steps_in(time.sample_interval);
+  const long between_outputs = std::gcd(per_sample, time.steps_in(time.frame_interval));
+
+  const CheckpointFile checkpoint(folder, setup, packing);
   Simulation simulation(setup, particles_of(packing, setup), packing.bar_tip, threads);
   packing = {};  // a large one takes a tenth of all memory
-  MotionFile motion(folder / "motion.h5", setup, simulation.particles());
-  ResistanceFile resistance(folder / "resistance.csv");
-  LedgerFile ledger(folder / "ledger.csv");
-
-  for (long left = setup.time.steps_in(setup.time.rest); left > 0; left -= per_sample) {
-    simulation.advance(std::min(left, per_sample));
-    simulation.check();
+  Progress progress;
+  if (checkpoint_every) {
+    if (CheckpointFile::is_in(folder))
+      checkpoint.read(progress, simulation);
+    else
+      checkpoint.write(progress, simulation);  // before all other files: where there are any, it is there
   }
-  const long rest_steps = simulation.steps();
-  if (setup.bar) simulation.start_bar();
-  const double bar_speed = setup.bar ? setup.bar->speed : 0.0;
+  Checkpoints checkpoints(checkpoint, checkpoint_every);
+  Recording recording(setup, folder, simulation.particles(), progress, checkpoint_every.has_value());
 
-  long frames = 0;
-  long samples = 0;
-  for (long step = 0;; step += between_outputs) {
-    simulation.check();
-    // Times come from the count of intervals, not of steps: engines with other time steps must write the same times.
-    if (step % per_sample == 0) {
-      const double time = static_cast<double>(samples) * setup.time.sample_interval;
-      resistance.row(time, bar_speed * time, simulation);
-      ledger.row(time, simulation);
-      ++samples;
+  try {
+    while (progress.rested < rest) {
+      const long steps = std::min(rest - progress.rested, per_sample);
+      simulation.advance(steps);
+      progress.rested += steps;
+      simulation.check();
+      checkpoints.look(progress, simulation);
     }
-    if (step % per_frame == 0) {
-      const double time = static_cast<double>(frames) * setup.time.frame_interval;
-      motion.frame(step, time, simulation.bar_tip(), simulation.particles());
-      ++frames;
+    if (progress.recorded < 0) {
+      if (setup.bar) simulation.start_bar();
+      simulation.check();
+      recording.record(0, simulation);
     }
-    if (step == total) break;
-    simulation.advance(between_outputs);
+    while (progress.recorded < total) {
+      checkpoints.look(progress, simulation);
+      simulation.advance(between_outputs);
+      simulation.check();
+      recording.record(progress.recorded + between_outputs, simulation);
+    }
+  } catch (const SimulationError&) {
+    recording.make_motion(simulation.particles());
+    checkpoint.remove();
+    recording.remove_spool();
+    throw;
   }
-
-  const nlohmann::json done = {{"completed", true},          {"engine", "native"},
-                               {"version", version_line()},  {"rest_steps", rest_steps},
-                               {"penetration_steps", total}, {"particles", simulation.particles().count()},
-                               {"frames", frames},           {"samples", samples}};
-  LineFile(folder / "run.json").line(done.dump(2));
+  recording.make_motion(simulation.particles());
+  write_end(setup, folder, progress, simulation);
+  if (checkpoint_every) checkpoint.remove();
+  recording.remove_spool();
 }
 
 }  // namespace crossdem

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "archive.hpp"
 #include "neighbours.hpp"
 #include "scheme.hpp"
 
@@ -78,6 +79,18 @@ Simulation::Simulation(const Case& setup, Particles particles, std::optional<dou
   w.kinetic_limit = explosion_factor * (w.kinetic_at_start + w.spring_at_start + weight_energy) +
                     0.5 * total_mass(w.particles) * bar_speed * bar_speed;
   w.moment_of_mass_at_start = moment_of_mass(w.particles);
+}
+
+void Simulation::save(std::ostream& to) const {
+  OutArchive archive(to);
+  archive(state_->world);
+  state_->stepper->save(archive);
+}
+
+void Simulation::load(std::istream& from) {
+  InArchive archive(from);
+  archive(state_->world);
+  state_->stepper->load(archive);
 }
 
 Simulation::~Simulation() = default;

@@ -24,13 +24,24 @@ std::string exact(double number) {
   return {digits.data(), end};
 }
 
-LineFile::LineFile(std::filesystem::path path) : path_(std::move(path)), out_(path_, std::ios::binary) {
+void cut_to(const std::filesystem::path& path, std::uintmax_t bytes) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || size < bytes) throw FileError(path, "is not there as far as the checkpoint says");
+  std::filesystem::resize_file(path, bytes, error);
+  if (error) throw FileError(path, "cannot be written: " + error.message());
+}
+
+LineFile::LineFile(std::filesystem::path path, std::uintmax_t keep) : path_(std::move(path)), bytes_(keep) {
+  if (keep > 0) cut_to(path_, keep);
+  out_.open(path_, std::ios::binary | (keep > 0 ? std::ios::app : std::ios::trunc));
   if (!out_) throw FileError(path_, "cannot be written");
 }
 
 void LineFile::line(const std::string& text) {
   out_ << text << '\n' << std::flush;
   if (!out_) throw WriteError(path_, "cannot be written any further; is the disk full?");
+  bytes_ += text.size() + 1;
 }
 
 }  // namespace crossdem

@@ -27,16 +27,22 @@ std::string read_text(const std::filesystem::path& path, std::uintmax_t most_byt
 /// A number with all the digits it takes to read the same double back.
 std::string exact(double number);
 
+/// Cuts off what stands behind the first `bytes` of a file. Throws FileError where there are fewer.
+void cut_to(const std::filesystem::path& path, std::uintmax_t bytes);
+
 /// A text file written line by line; each line is handed to the system at once, so that a full disk is an error and
 /// readers see progress.
 class LineFile {
  public:
-  explicit LineFile(std::filesystem::path path);
+  /// Goes on behind the first `keep` bytes of what is there. Throws FileError where there are fewer.
+  explicit LineFile(std::filesystem::path path, std::uintmax_t keep = 0);
   void line(const std::string& text);
+  [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
 
  private:
   std::filesystem::path path_;
   std::ofstream out_;
+  std::uintmax_t bytes_;
 };
 
 }  // namespace crossdem

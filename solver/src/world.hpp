@@ -1,6 +1,7 @@
 #pragma once
 // All that a step reads and writes, but for the memory of contacts, and what moves it.
 
+#include "archive.hpp"
 #include "crossdem/simulation.hpp"
 #include "integrators.hpp"
 #include "surfaces.hpp"
@@ -29,6 +30,11 @@ struct SurfaceTotals {
     return *this;
   }
 };
+
+template <class Archive>
+void serialize(Archive& archive, SurfaceTotals& totals) {
+  archive(totals.force, totals.on_bar);
+}
 
 struct World {
   Particles particles;
@@ -67,6 +73,14 @@ struct World {
   void check() const;
 };
 
+/// What changes in steps, and what was at the start.
+template <class Archive>
+void serialize(Archive& archive, World& w) {
+  archive(w.particles, w.steps, w.loads, w.totals, w.contact_work, w.momentum_ledger, w.energy_ledger,
+          w.momentum_at_start, w.kinetic_at_start, w.spring_at_start, w.moment_of_mass_at_start, w.kinetic_limit);
+  if (w.surfaces.bar) archive(*w.surfaces.bar);
+}
+
 /// load(contact, totals) for every contact with a surface, in order, each run of particles_in_sum with totals of its
 /// own.
 template <class OnSurfaces, class LoadOf>
@@ -93,6 +107,10 @@ class Stepper {
   virtual void advance(World& world, long steps) = 0;
   /// [J] in the springs of all contacts.
   [[nodiscard]] virtual double spring_energy(const World& world) const = 0;
+
+  /// All that it remembers, and back.
+  virtual void save(OutArchive& archive) = 0;
+  virtual void load(InArchive& archive) = 0;
 };
 
 }  // namespace crossdem

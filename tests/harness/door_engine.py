@@ -59,6 +59,8 @@ def main():
         resistance["time_s"] += 1e-3
     if FAULT == "lost particle":
         motion.loc[motion.index[-1], "x_m"] = -1.0
+    if FAULT == "spins the other way":
+        motion[["angle_rad", "angular_velocity_rad_s"]] *= -1
     if FAULT == "other units":
         motion["x_m"] *= 1e3
         resistance["force_y_N"] *= 1e3

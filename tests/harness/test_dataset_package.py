@@ -13,10 +13,13 @@ import h5py
 import pytest
 import yaml
 from small_case import small_file
+from test_own_engine import DESCRIPTION
 
 from crossdem import ExitCode
+from crossdem.adapters import engines
 from crossdem.adapters.case import load_case
 from crossdem.adapters.motion_file import DATASETS
+from crossdem.adapters.solver import find_solver
 from crossdem.compare.cli import main
 from crossdem.compare.dataset_documents import TIMED
 from crossdem.compare.dataset_package import read_package
@@ -159,7 +162,11 @@ def test_the_data_package_lists_every_file_with_its_size_and_hash(package):
 
 def test_schemas_name_the_columns_that_tables_have(package):
     tables = [entry for entry in descriptor(package)["resources"] if "schema" in entry]
-    assert {Path(entry["path"]).name for entry in tables} > {"resistance.csv", "endpoints.csv"}
+    assert {Path(entry["path"]).name for entry in tables} > {
+        "resistance.csv",
+        "ledger.csv",
+        "endpoints.csv",
+    }
     for entry in tables:
         with open(package / entry["path"], newline="", encoding="utf-8") as file:
             header = next(csv.reader(file))
@@ -179,6 +186,40 @@ def test_every_dataset_of_a_motion_file_is_defined_with_its_unit(package):
         )
         assert all(row["unit"] == file[n].attrs.get("unit", "1") for n, row in rows.items())
     assert defined == objects and rows.keys() <= DATASETS.keys()
+
+
+def test_every_key_of_a_manifest_is_defined(package):
+    with open(package / "columns.csv", newline="", encoding="utf-8") as file:
+        defined = {
+            row["name"] for row in csv.DictReader(file) if row["files"] == "runs/*/manifest.json"
+        }
+    for path in package.glob("runs/*/manifest.json"):
+        assert json.loads(path.read_bytes()).keys() <= defined
+
+
+def test_no_file_names_a_folder_of_this_machine(package, case_file):
+    """But for the place of its packages in Debian."""
+    here = {
+        str(package.parent),
+        str(case_file.parent),
+        str(Path.home()),
+        str(Path(__file__).resolve().parents[2]),
+    }
+    for name in files_in(package):
+        content = (package / name).read_bytes()
+        assert not [place for place in here if place.encode() in content], name
+
+
+def test_the_command_of_a_package_with_a_users_code_names_it(case_file, tmp_path, monkeypatch):
+    monkeypatch.setattr(engines, "ENGINES", dict(engines.ENGINES))
+    monkeypatch.setenv("CROSSDEM_SOLVER", str(find_solver()))
+    shutil.copy(Path(__file__).with_name("door_engine.py"), tmp_path)
+    (tmp_path / "door.toml").write_text(DESCRIPTION)
+    own = ["--engines", "native", "--engine", str(tmp_path / "door.toml"), "--seeds", "1"]
+    assert build(case_file, tmp_path / "package", tmp_path / "work", *own) == 0
+    command = json.loads((tmp_path / "package" / "provenance.json").read_bytes())["command"]
+    assert "--engines native --seeds 1 " in command and " --engine door.toml " in command
+    assert str(tmp_path) not in command
 
 
 def test_the_crate_defines_all_that_it_names(package):

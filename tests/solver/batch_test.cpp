@@ -105,6 +105,8 @@ class PlainPaper final : public Stepper {
   PlainPaper(const Case& setup, World& world) : stepper_(PaperBatches<Scheme>::plain(setup, world)) {}
   void advance(World& world, long steps) override { stepper_.advance(world, steps); }
   [[nodiscard]] double spring_energy(const World& world) const override { return stepper_.spring_energy(world); }
+  void save(OutArchive& archive) override { stepper_.save(archive); }
+  void load(InArchive& archive) override { stepper_.load(archive); }
 
  private:
   PaperStepper<Scheme> stepper_;

@@ -2,6 +2,7 @@
 // A whole run of a case: rest, then penetration, recorded into a folder.
 
 #include <filesystem>
+#include <optional>
 
 #include "crossdem/packing.hpp"
 
@@ -9,6 +10,14 @@ namespace crossdem {
 
 /// Runs `setup` from `packing` and writes motion.h5, resistance.csv, ledger.csv and, when all is done, run.json into
 /// the existing `folder`. Throws SimulationError or FileError; what was written until then stays.
-void run(const Case& setup, Packing packing, const std::filesystem::path& folder, std::size_t threads = 1);
+///
+/// With `checkpoint_every` [s, of the clock on the wall, at the next output] the folder holds a checkpoint until the
+/// run has ended: whatever cuts the run short, the same call then carries it on, to the same bits.
+void run(const Case& setup, Packing packing, const std::filesystem::path& folder, std::size_t threads = 1,
+         std::optional<double> checkpoint_every = std::nullopt);
+
+/// Whether a run in `folder` was cut short and can be carried on. A checkpoint that was cut short itself is removed: the
+/// first one is there before all other files.
+bool can_be_carried_on(const std::filesystem::path& folder);
 
 }  // namespace crossdem

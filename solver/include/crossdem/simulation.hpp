@@ -1,6 +1,7 @@
 #pragma once
 // One simulation: particles in a container, with or without the bar, moved step by step by the scheme of the case.
 
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -73,6 +74,11 @@ class Simulation {
   /// Throws SimulationError on positions that are not finite, on a particle that went through a wall, and on a kinetic
   /// energy beyond anything that weight and bar could have given. Also called whenever neighbours are searched.
   void check() const;
+
+  /// All of its state, for load() of a simulation of the same case, particles and bar, which then goes on as this one
+  /// would, to the last bit. In the way of this machine and of this build.
+  void save(std::ostream& to) const;
+  void load(std::istream& from);
 
   [[nodiscard]] const Particles& particles() const;
   [[nodiscard]] std::optional<double> bar_tip() const;  // [m], none without a bar

@@ -32,6 +32,11 @@ struct HookeSprings {
   double rolling = 0.0;             // [N m], moment of the rolling spring
 };
 
+template <class Archive>
+void serialize(Archive& archive, HookeSprings& springs) {
+  archive(springs.shear, springs.rolling);
+}
+
 /// `shear` [m] is the contact's memory, which is carried on only where `advance` says so; `limit_force`: no attraction.
 inline HookeReaction liggghts_hooke(const HookeApproach& a, const ContactParameters& k, double dt, bool limit_force,
                                     bool advance, Vector2& shear) {

@@ -18,6 +18,11 @@ struct ViscElMemory {
   bool real = false;                 // as YADE calls an interaction that has touched and not yet parted
 };
 
+template <class Archive>
+void serialize(Archive& archive, ViscElMemory& memory) {
+  archive(memory.shear, memory.normal, memory.real);
+}
+
 /// `normal` from body 1 to body 2, `velocity` [m/s] of body 1 relative to body 2 at the contact point, `force` [N] on
 /// body
 /// 2. False where they have parted (`overlap` [m] < 0): the interaction is deleted, with its memory.

@@ -50,6 +50,15 @@ class BatchedStepper final : public Stepper {
 
   [[nodiscard]] double spring_energy(const World& world) const override { return plain_.spring_energy(world); }
 
+  void save(OutArchive& archive) override {
+    plain_.save(archive);
+    archive(marked_now_);
+  }
+  void load(InArchive& archive) override {
+    plain_.load(archive);
+    archive(marked_now_);
+  }
+
  private:
   using OwnContacts = typename Scheme::Plain::OwnContacts;
   using OwnBar = typename Scheme::OwnBar;

@@ -89,6 +89,9 @@ class ConventionalStepper final : public Stepper {
     return energy;
   }
 
+  void save(OutArchive& archive) override { archive(contacts_, bar_, marked_at_, scheme_.motion()); }
+  void load(InArchive& archive) override { archive(contacts_, bar_, marked_at_, scheme_.motion()); }
+
   [[nodiscard]] Scheme& scheme() { return scheme_; }
   [[nodiscard]] OwnContacts& contacts() { return contacts_; }
   [[nodiscard]] OwnBar& bar() { return bar_; }

@@ -21,6 +21,11 @@ class LiggghtsScheme {
   struct SurfaceMemory {
     std::array<HookeSprings, MeshBar::size> springs;  // by triangle
     std::array<bool, MeshBar::size> held{};           // whether the triangle has a contact, touching or close
+
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(springs, held);
+    }
   };
   static constexpr bool first_evaluation_advances = false;
   static constexpr double share_before = Motion::first_share;
@@ -51,6 +56,11 @@ class LiggghtsScheme {
       velocity_ = bar.moving() ? -bar.speed() : 0.0;
       if (lists) mesh_->measure();
       has_moved_far_ = mesh_->has_moved(limit_squared_);
+    }
+
+    template <class Archive>
+    void serialize(Archive& archive) {
+      if (mesh_) archive(*mesh_, velocity_, has_moved_far_);
     }
 
     [[nodiscard]] const MeshBar& mesh() const { return *mesh_; }

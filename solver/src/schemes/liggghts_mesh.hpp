@@ -96,6 +96,11 @@ class MeshTriangle {
     return std::nullopt;
   }
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(node_, measured_at_, edge_, length_, normal_);
+  }
+
  private:
   [[nodiscard]] std::optional<MeshContact> edge_contact(MeshContact found, const Vector3& centre, std::size_t k) const {
     const double along = dot_in_order(centre - node_[k], edge_[k]);
@@ -161,6 +166,11 @@ class MeshBar {
   }
 
   [[nodiscard]] const std::vector<MeshTriangle>& triangles() const { return triangles_; }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    for (MeshTriangle& triangle : triangles_) archive(triangle);
+  }
 
   /// The other triangle of the same face.
   static std::size_t other(std::size_t triangle) { return triangle ^ 1U; }

@@ -15,6 +15,9 @@ class LiggghtsVerlet {
   explicit LiggghtsVerlet(const Particles&) {}
   static void begin(Particles&) {}
   static void end(World&) {}
+
+  template <class Archive>
+  void serialize(Archive&) {}
 };
 
 /// The paper's averaged displacement inside LIGGGHTS, by velocities that are set between steps: with w the velocity by
@@ -44,6 +47,11 @@ class LiggghtsSetVelocities {
       rate_before_[i] = rate;
       turning_before_[i] = turning;
     }
+  }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(set_, set_spin_, rate_before_, turning_before_);
   }
 
   /// w_(t-1) of particle i [m/s], [rad/s].

@@ -77,6 +77,9 @@ class PaperStepper final : public Stepper {
     return energy;
   }
 
+  void save(OutArchive& archive) override { archive(contacts_); }
+  void load(InArchive& archive) override { archive(contacts_); }
+
  private:
   /// Their normal springs are the forces until the first evaluation: an integrator may begin with a kick.
   void take_overlaps_as_old_contacts(World& world, BarCorner corner) {

@@ -37,6 +37,11 @@ class YadeScheme {
       velocity.y() = surfaces.bar->moving() ? -surfaces.bar->speed() : 0.0;
       centre += velocity * dt;
     }
+
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(centre, velocity);
+    }
   };
 
   YadeScheme(const Case& setup, const World& world)

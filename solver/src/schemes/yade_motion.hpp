@@ -27,6 +27,9 @@ class YadeLeapFrog {
     p.position[i] += p.velocity[i] * dt;
     p.angle[i] += p.spin[i] * dt;
   }
+
+  template <class Archive>
+  void serialize(Archive&) {}
 };
 
 /// The paper's averaged displacement inside YADE: with w = displacement / dt, Eqs. (16)-(21) read
@@ -40,6 +43,11 @@ class YadeMemoryForce {
       : rate_(p.velocity), rate_before_(p.velocity), turning_(p.spin), turning_before_(p.spin) {}
   [[nodiscard]] const Vector2& velocity(const Particles&, std::size_t i) const { return rate_[i]; }
   [[nodiscard]] double spin(const Particles&, std::size_t i) const { return turning_[i]; }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(rate_, rate_before_, turning_, turning_before_);
+  }
 
   /// w_(t-2) of particle i [m/s], [rad/s].
   [[nodiscard]] Vector2& rate_before(std::size_t i) { return rate_before_[i]; }
