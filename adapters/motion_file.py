@@ -50,8 +50,11 @@ def write_motion(
     box_m: tuple[float, float],
     time_step_s: float,
 ) -> None:
-    """Write `motion` of particles with radii (N,) in a container of `box_m` (width, height); doubles, uncompressed."""
-    with h5py.File(path, "w") as file:
+    """Write `motion` of particles with radii (N,) in a container of `box_m` (width, height); doubles, uncompressed.
+
+    Raises OSError. It is made in memory: on a full disk the library would have more to say than that.
+    """
+    with h5py.File(path.name, "w", driver="core", backing_store=False) as file:
         write_header(file, engine, version)
         soil = file.create_group("particles/soil")
         box = soil.create_group("box")
@@ -72,6 +75,8 @@ def write_motion(
         if motion.bar_tip_m is not None:
             bar = file.create_group("observables/bar")
             _write_element(bar, "tip", motion.bar_tip_m, "m", position)
+        file.flush()
+        path.write_bytes(file.id.get_file_image())
 
 
 def write_header(file: h5py.File, engine: str, version: str) -> None:
