@@ -61,7 +61,15 @@ def build(
     comparison = compare_runs(case, map(Dataset.read, folders), horizon=horizon)
     own = {name: description for name in engines for description in attached([name])}
     ours = [name for name in engines if name not in own]
-    words = ["dataset", "build", Path(case_file).name, "--engines", ",".join(ours), "--seeds", seeds]
+    words = [
+        "dataset",
+        "build",
+        Path(case_file).name,
+        "--engines",
+        ",".join(ours),
+        "--seeds",
+        seeds,
+    ]
     words += [word for description in own.values() for word in ("--engine", Path(description).name)]
     words += ["--native-seeds", native_seeds, "--twins", twins]
     words += [word for change in overrides for word in ("--set", change)]

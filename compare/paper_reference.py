@@ -124,7 +124,8 @@ class _Bed:
         if self.reading["update_order"] == "in_turn":
             for i in self.particles:
                 for touch in (*self.neighbours(i, self.particles), *self.surfaces(i)):
-                    self.receive(i, touch, *self.force(i, touch))
+                    f_n, f_s, f_r = self.force(i, touch)
+                    self.receive(i, touch, f_n, f_s, self.rolling_levers(i, touch)[0] * f_r)
                 self.move(i)
         else:
             self.collect_all(self.force)
@@ -135,10 +136,11 @@ class _Bed:
         """The loads of all contacts, each pair once."""
         for i in self.particles:
             for touch in self.neighbours(i, self.particles[i + 1 :]):
-                f_n, f_s, moment = force(i, touch)
-                self.receive(i, touch, f_n, f_s, moment)
+                f_n, f_s, f_r = force(i, touch)
+                of_i, of_j = self.rolling_levers(i, touch)
+                self.receive(i, touch, f_n, f_s, of_i * f_r)
                 seen_from_j = touch._replace(cos=-touch.cos, sin=-touch.sin)
-                self.receive(touch.partner, seen_from_j, f_n, f_s, -moment)
+                self.receive(touch.partner, seen_from_j, f_n, f_s, -of_j * f_r)
         for i in self.particles:
             for touch in self.surfaces(i):
                 self.receive(i, touch, *force(i, touch))
@@ -182,18 +184,17 @@ class _Bed:
         return min(max(x, centre - half), centre + half) - x, min(max(y, self.tip), top) - y
 
     def clear_loads(self) -> None:
-        self.load = [[0.0] * 4 for _ in self.particles]  # X, Y, -M / r, moment against rolling
+        self.load = [[0.0] * 3 for _ in self.particles]  # X, Y, -M / r
         self.bar_force, self.tip_force, self.floor_force = (0.0, 0.0), 0.0, 0.0
 
-    def receive(self, i: int, touch: _Touch, f_n: float, f_s: float, moment: float) -> None:
-        """Eqs 10-12; the `moment` against rolling is taken from i."""
+    def receive(self, i: int, touch: _Touch, f_n: float, f_s: float, rim_force: float) -> None:
+        """Eqs 10-12; `rim_force` acts against rolling, at the radius of i."""
         x = -f_n * touch.cos + f_s * touch.sin
         y = -f_n * touch.sin - f_s * touch.cos
         load = self.load[i]
         load[0] += x
         load[1] += y
-        load[2] += self.lever(i, touch) * f_s
-        load[3] -= moment
+        load[2] += self.lever(i, touch) * f_s + rim_force
         if touch.partner == "bar":
             self.bar_force = (self.bar_force[0] - x, self.bar_force[1] - y)
             if self.position[i][1] < self.tip:
@@ -221,16 +222,23 @@ class _Bed:
             turning += self.arm(touch.partner, touch) * turn_j
         return x * touch.cos + y * touch.sin, -x * touch.sin + y * touch.cos + turning
 
-    def rolling(self, i: int, touch: _Touch) -> tuple[float, float]:
-        """The radius by which i rolls on its partner, and the way."""
-        j, radius, turn = touch.partner, self.radius[i], self.displacement[i][2]
-        if isinstance(j, int):
-            radius = radius * self.radius[j] / (radius + self.radius[j])
-            turn -= self.displacement[j][2]
-        return radius, radius * turn
+    def rolling_levers(self, i: int, touch: _Touch) -> tuple[float, float]:
+        """The radius r_i r_j / (r_i + r_j) by which i rolls on its partner, in radii of i and of that."""
+        if not isinstance(touch.partner, int):
+            return 1.0, 0.0
+        r_i, r_j = self.radius[i], self.radius[touch.partner]
+        return r_j / (r_i + r_j), r_i / (r_i + r_j)
+
+    def rolled(self, i: int, touch: _Touch) -> float:
+        """The way by which i has rolled on its partner."""
+        of_i, of_j = self.rolling_levers(i, touch)
+        way = of_i * (self.radius[i] * self.displacement[i][2])
+        if isinstance(j := touch.partner, int):
+            way -= of_j * (self.radius[j] * self.displacement[j][2])
+        return way
 
     def force(self, i: int, touch: _Touch) -> tuple[float, float, float]:
-        """Eqs 1-9: f_n and f_s of one contact, and the moment against rolling."""
+        """Eqs 1-9: f_n and f_s of one contact, and f_r against rolling."""
         reading, law, dt = self.reading, touch.law, self.dt
         u_n, u_s = self.relative(self.displacement, i, touch, -self.bar_speed * dt)
         damped_n, damped_s = u_n, u_s
@@ -269,11 +277,12 @@ class _Bed:
         if abs(e_s) > law["friction"] * pressed:  # Eq 9
             f_s = e_s = math.copysign(law["friction"] * pressed, e_s)
 
-        radius, rolled = self.rolling(i, touch)
-        e_r += law["shear_stiffness_N_m"] * rolled  # as Eqs 7 and 9, without a dashpot
+        e_r += law["shear_stiffness_N_m"] * self.rolled(
+            i, touch
+        )  # as Eqs 7 and 9, without a dashpot
         e_r = math.copysign(min(abs(e_r), law.get("rolling_friction", 0.0) * pressed), e_r)
         self.springs[i, touch.partner] = (e_n, e_s, e_r)
-        return f_n, f_s, radius * e_r
+        return f_n, f_s, e_r
 
     def move(self, i: int) -> None:
         """Eqs 13-24 for particle i; velocity Verlet has moved it before, and gives it the second half of its kick."""
@@ -285,11 +294,10 @@ class _Bed:
 
     def accelerate(self, i: int, dt: float) -> None:
         """Eqs 12-18."""
-        x, y, shear, moment = self.load[i]
+        x, y, shear = self.load[i]
         push, turn = dt / self.mass[i], self.radius[i] * (dt / self.inertia[i])
         gained = (x * push, y * push - self.case["gravity_m_s2"] * dt, -shear * turn)
         self.velocity[i] = [v + more for v, more in zip(self.velocity[i], gained)]
-        self.velocity[i][2] += moment * (dt / self.inertia[i])
 
     def displace(self, i: int, averaged: bool) -> None:
         """Eqs 19-24; if not averaged, a step's displacement is velocity times time."""
