@@ -158,7 +158,7 @@ def export(**arguments):
 def reproduce(**arguments):
     """Test the paper's claims, figure by figure: what it says, what comes out here, and the number that tells.
 
-    Takes about 40 minutes on two cores; interrupted, the same command goes on where it was. Ends with 3 when a run
+    Takes 35 to 50 minutes on two cores; interrupted, the same command goes on where it was. Ends with 3 when a run
     failed, whatever became of the claims.
     """
     return commands.reproduce(**arguments)

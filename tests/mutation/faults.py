@@ -238,8 +238,7 @@ RECORDS = (
         "bar force without shear",
         RECORD,
         STEP,
-        "totals.add(w_.surfaces, contact.surface, disc.centre,\n"
-        "               add(i, f.force, f.normal, f.lever, surface_rolling_lever));",
+        "totals.add(w_.surfaces, contact.surface, disc.centre, add(i, f.force, f.normal, f.lever, surface_rolling_lever));",
         "add(i, f.force, f.normal, f.lever, surface_rolling_lever);\n"
         "    totals.add(w_.surfaces, contact.surface, disc.centre, -f.force.normal * f.normal);",
     ),
