@@ -67,6 +67,12 @@ bool CheckpointFile::is_in(const std::filesystem::path& folder) {
   return std::filesystem::is_regular_file(folder / file_name, none);
 }
 
+std::string CheckpointFile::run() const {
+  std::ostringstream name;
+  name << std::hex << case_ << "-" << packing_;
+  return name.str();
+}
+
 void CheckpointFile::remove_unfinished(const std::filesystem::path& folder) {
   std::error_code none;
   std::filesystem::remove(beside(folder / file_name), none);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "crossdem/packing.hpp"
 #include "crossdem/simulation.hpp"
@@ -27,6 +28,9 @@ class CheckpointFile {
 
   /// Whether `folder` holds one.
   static bool is_in(const std::filesystem::path& folder);
+
+  /// Names case and packing [hex].
+  [[nodiscard]] std::string run() const;
 
   /// Removes one that was being written when its run was cut short.
   static void remove_unfinished(const std::filesystem::path& folder);

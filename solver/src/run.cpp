@@ -11,6 +11,10 @@
 namespace crossdem {
 namespace {
 
+constexpr const char* motion_file = "motion.h5";
+constexpr const char* spool_file = "frames.f64";
+constexpr const char* end_file = "run.json";  // written last
+
 /// The files of a run, as far as `progress` says.
 class Recording {
  public:
@@ -23,9 +27,9 @@ class Recording {
         resistance_(folder / "resistance.csv", progress.resistance_bytes),
         ledger_(folder / "ledger.csv", progress.ledger_bytes) {
     if (spools)
-      spool_.emplace(folder / spool, particles.count(), progress.frames);
+      spool_.emplace(folder / spool_file, particles.count(), progress.frames);
     else
-      motion_.emplace(folder / motion, setup, particles);
+      motion_.emplace(folder / motion_file, setup, particles);
   }
 
   /// What is due `step` steps after the rest.
@@ -55,20 +59,12 @@ class Recording {
   /// Makes motion.h5 of the frames that were spooled.
   void make_motion(const Particles& particles) {
     if (!spool_) return;
-    motion_.emplace(folder_ / motion, setup_, particles);
+    motion_.emplace(folder_ / motion_file, setup_, particles);
     spool_->copy_to(*motion_);
     motion_.reset();
   }
 
-  void remove_spool() {
-    std::error_code none;
-    if (spool_) std::filesystem::remove(folder_ / spool, none);
-  }
-
  private:
-  static constexpr const char* motion = "motion.h5";
-  static constexpr const char* spool = "frames.f64";
-
   const Case& setup_;
   std::filesystem::path folder_;
   Progress& progress_;
@@ -96,24 +92,41 @@ class Checkpoints {
   Clock::time_point latest_ = Clock::now();
 };
 
-void write_end(const Case& setup, const std::filesystem::path& folder, const Progress& progress,
-               const Simulation& simulation) {
+void remove_spool(const std::filesystem::path& folder) {
+  std::error_code none;
+  std::filesystem::remove(folder / spool_file, none);
+}
+
+/// Whether the run named so has ended in `folder`. Throws FileError where another one has.
+bool has_ended(const std::filesystem::path& folder, const std::string& name) {
+  const std::filesystem::path end = folder / end_file;
+  if (CheckpointFile::is_in(folder) || !std::filesystem::exists(end)) return false;
+  const nlohmann::json told = nlohmann::json::parse(read_text(end, 1 << 20), nullptr, false);
+  if (!told.is_object() || told.value("run", nlohmann::json()) != name)
+    throw FileError(folder, "holds a run of another case or packing, which has ended; choose another folder");
+  remove_spool(folder);
+  return true;
+}
+
+void write_end(const Case& setup, const std::filesystem::path& folder, const std::string& name,
+               const Progress& progress, const Simulation& simulation) {
   const nlohmann::json done = {{"completed", true},
                                {"engine", "native"},
+                               {"run", name},
                                {"version", version_line()},
                                {"rest_steps", setup.time.steps_in(setup.time.rest)},
                                {"penetration_steps", progress.recorded},
                                {"particles", simulation.particles().count()},
                                {"frames", progress.frames},
                                {"samples", progress.samples}};
-  LineFile(folder / "run.json").line(done.dump(2));
+  LineFile(folder / end_file).line(done.dump(2));
 }
 
 }  // namespace
 
 bool can_be_carried_on(const std::filesystem::path& folder) {
   CheckpointFile::remove_unfinished(folder);
-  return CheckpointFile::is_in(folder);
+  return CheckpointFile::is_in(folder) || std::filesystem::exists(folder / end_file);
 }
 
 void run(const Case& setup, Packing packing, const std::filesystem::path& folder, std::size_t threads,
@@ -125,6 +138,7 @@ void run(const Case& setup, Packing packing, const std::filesystem::path& folder
   const long between_outputs = std::gcd(per_sample, time.steps_in(time.frame_interval));
 
   const CheckpointFile checkpoint(folder, setup, packing);
+  if (checkpoint_every && has_ended(folder, checkpoint.run())) return;
   Simulation simulation(setup, particles_of(packing, setup), packing.bar_tip, threads);
   packing = {};  // a large one takes a tenth of all memory
   Progress progress;
@@ -159,13 +173,14 @@ void run(const Case& setup, Packing packing, const std::filesystem::path& folder
   } catch (const SimulationError&) {
     recording.make_motion(simulation.particles());
     checkpoint.remove();
-    recording.remove_spool();
+    remove_spool(folder);
     throw;
   }
   recording.make_motion(simulation.particles());
-  write_end(setup, folder, progress, simulation);
-  if (checkpoint_every) checkpoint.remove();
-  recording.remove_spool();
+  write_end(setup, folder, checkpoint.run(), progress, simulation);
+  if (!checkpoint_every) return;
+  checkpoint.remove();
+  remove_spool(folder);
 }
 
 }  // namespace crossdem

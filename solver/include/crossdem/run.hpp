@@ -16,8 +16,9 @@ namespace crossdem {
 void run(const Case& setup, Packing packing, const std::filesystem::path& folder, std::size_t threads = 1,
          std::optional<double> checkpoint_every = std::nullopt);
 
-/// Whether a run in `folder` was cut short and can be carried on. A checkpoint that was cut short itself is removed:
-/// the first one is there before all other files.
+/// Whether `folder` holds a run that was cut short and can be carried on, or that has ended, with which the call above
+/// has nothing to do if it is the same. A checkpoint that was cut short itself is removed: the first one is there
+/// before all other files.
 bool can_be_carried_on(const std::filesystem::path& folder);
 
 }  // namespace crossdem
