@@ -21,7 +21,7 @@ from .ensemble import Ensemble
 from .explain import explain_case
 from .horizon import Horizon
 from .horizon_runs import find_horizon, horizon_of_runs
-from .dataset_package import read_package
+from .dataset_record import read_package
 from .record_command import plans_of, record_case
 from .recorded import check_writable, find_record
 from .replay import replayed, restore_packings, said_of
@@ -58,7 +58,7 @@ def check(
 
 def _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, record) -> ExitCode:
     others = replayed(record, engines, seeds, twins)
-    click.echo(said_of(others))
+    click.echo(said_of(record, others))
     runs, found = Runs((), {}), None
     with _workspace(case, overrides, out, "-replay") as workspace:
         if engines:

@@ -59,28 +59,24 @@ def build(
         folders |= dict.fromkeys(runs.folders)
     horizon = horizon_of_runs(case, engines, {}, workspace, here(jobs, profile), Console())
     comparison = compare_runs(case, map(Dataset.read, folders), horizon=horizon)
-    own = {name: description for name in engines for description in attached([name])}
-    ours = [name for name in engines if name not in own]
-    words = [
-        "dataset",
-        "build",
-        Path(case_file).name,
-        "--engines",
-        ",".join(ours),
-        "--seeds",
-        seeds,
-    ]
-    words += [word for description in own.values() for word in ("--engine", Path(description).name)]
-    words += ["--native-seeds", native_seeds, "--twins", twins]
-    words += [word for change in overrides for word in ("--set", change)]
-    words += ["--mpi-ranks", ranks] if ranks > 1 else []
-    command = command_of([*words, "--output", output.name])
-    identity = write_package(case, list(folders), comparison, command, output)
+    given = ["--seeds", seeds, "--native-seeds", native_seeds, "--twins", twins]
+    given += [word for change in overrides for word in ("--set", change)]
+    given += ["--mpi-ranks", ranks] if ranks > 1 else []
+    words = ["dataset", "build", case_file.name, *_named(engines), *given, "--output", output.name]
+    command = command_of(words)
+    identity = write_package(case, overrides, list(folders), comparison, command, output)
     click.echo(f"{output}: {len(folders)} runs, verdict {comparison.verdict.word}")
     click.echo(f"identity (SHA-256 of {SUMS}): {identity}")
     if archive:
         click.echo(write_archive(output))
     return ExitCode.AGREES
+
+
+def _named(engines: Sequence[str]) -> list[str]:
+    """The words of a command that name `engines`; a file of a user's engine by its name alone, for any machine."""
+    own = {name: description for name in engines for description in attached([name])}
+    words = ["--engines", ",".join(name for name in engines if name not in own)]
+    return words + [word for file in own.values() for word in ("--engine", Path(file).name)]
 
 
 def verify(folder: Path, identity: str | None) -> ExitCode:

@@ -19,12 +19,12 @@ from .comparison import Comparison
 from .dataset_columns import ABOUT_COLUMNS, RUN_COLUMNS, manifest_keys, motion_columns, tables
 from .dataset_crate import METADATA, crate, ended
 from .dataset_sums import SUMS, files_in, sha256_of, write_sums
-from .dataset_verify import DESCRIPTOR, faults_of_package
+from .dataset_descriptor import DESCRIPTOR, data_package
 from .ensemble import Ensemble
-from .finished_runs import packing_files, read_runs
+from .finished_runs import read_runs
 from .provenance import provenance
 from .record import record_text
-from .recorded import CONTENT, DATE, Record, RecordError
+from .recorded import CONTENT
 
 AUTHORS = "The crossdem authors"
 
@@ -40,9 +40,17 @@ def refuse_taken(folder: Path) -> None:
 
 
 def write_package(
-    case: Case, runs: Sequence[Path], comparison: Comparison, command: str, folder: Path
+    case: Case,
+    overrides: Sequence[str],
+    runs: Sequence[Path],
+    comparison: Comparison,
+    command: str,
+    folder: Path,
 ) -> str:
-    """Into the new `folder`, whole or not at all; returns its identity. `command`: what makes it again."""
+    """Into the new `folder`, whole or not at all; returns its identity.
+
+    `overrides`: what was changed in the file of `case` (key.path=value); `command`: what makes the package again.
+    """
     refuse_taken(folder)
     folder = folder.absolute()
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -50,38 +58,20 @@ def write_package(
     shutil.rmtree(partial, ignore_errors=True)
     try:
         partial.mkdir()
-        identity = _fill(partial, case, runs, comparison, command)
+        identity = _fill(partial, case, overrides, runs, comparison, command)
         partial.rename(folder)
     finally:
         shutil.rmtree(partial, ignore_errors=True)
     return identity
 
 
-def read_package(folder: Path, case: Case) -> Record:
-    """The runs of a package as a record of `case`. Raises RecordError when it is damaged, or of another case."""
-    if faults := faults_of_package(folder):
-        raise RecordError(
-            [f"{folder}: not as it was built; fetch it anew", *(f"  {fault}" for fault in faults)]
-        )
-    packaged = Case.from_canonical((folder / "case.json").read_bytes())
-    if packaged.run_hash != case.run_hash:
-        raise RecordError(
-            [
-                f"{folder}: holds runs of another case, {packaged.name}: runs depend on every value but title and checks. "
-                f"Use {folder / 'case.json'}, or build a package of this one"
-            ]
-        )
-    runs = pd.read_csv(folder / "tables" / "runs.csv")["folder"]
-    ensemble, packings = read_runs([folder / name for name in runs])
-    manifests = {
-        run: about | {DATE: about["started_utc"]} for run, about in ensemble.manifests.items()
-    }
-    ensemble = Ensemble(ensemble.endpoints, ensemble.profiles, ensemble.fields, manifests)
-    return Record(packaged, ensemble, *packing_files(packings), {})
-
-
 def _fill(
-    folder: Path, case: Case, runs: Sequence[Path], comparison: Comparison, command: str
+    folder: Path,
+    case: Case,
+    overrides: Sequence[str],
+    runs: Sequence[Path],
+    comparison: Comparison,
+    command: str,
 ) -> str:
     ensemble, packings = read_runs(runs)
     for run in runs:
@@ -92,7 +82,7 @@ def _fill(
         for name in ("packing.csv", "packing.json"):
             shutil.copyfile(packing.folder / name, place / name)
     manifests = _by_folder(ensemble, runs)
-    about = _about(case, comparison, list(manifests.values()), command)
+    about = _about(case, overrides, comparison, list(manifests.values()), command)
     columns = tables(list(ensemble.profiles.columns))
     others = {
         "runs/*/motion.h5": motion_columns(runs[0] / "motion.h5"),
@@ -117,7 +107,7 @@ def _fill(
     sizes = {name: None if name in to_come[1:] else _size(folder / name) for name in names}
     _write(folder / METADATA, documents.json_text(crate(about, sizes, manifests)))
     facts = {name: (_size(folder / name), sha256_of(folder / name)) for name in files_in(folder)}
-    descriptor = documents.data_package(about, facts, columns)
+    descriptor = data_package(about, facts, columns)
     _write(folder / DESCRIPTOR, documents.json_text(descriptor))
     return write_sums(folder)
 
@@ -148,15 +138,20 @@ def _size(path: Path) -> int:
 
 
 def _about(
-    case: Case, comparison: Comparison, manifests: Sequence[dict], command: str
+    case: Case,
+    overrides: Sequence[str],
+    comparison: Comparison,
+    manifests: Sequence[dict],
+    command: str,
 ) -> dict[str, str]:
     """What the texts say of a package; its date is that of its last run."""
     engines = ", ".join(dict.fromkeys(about["engine"] for about in manifests))
     seeds = len({about["seed"] for about in manifests})
+    changed = f", changed: {', '.join(overrides)}" if overrides else ""
     return {
         "name": f"crossdem-{case.name}",
-        "title": f"{case.resolved['title']}: reference runs of {engines}",
-        "description": f"{len(manifests)} runs of the case {case.name} by {engines}, on {seeds} packings of the same "
+        "title": f"{case.resolved['title']}{changed}: reference runs of {engines}",
+        "description": f"{len(manifests)} runs of the case {case.name}{changed}, by {engines}, on {seeds} packings of the same "
         "particles: motion of every particle, forces on the bar, and the comparison of the codes.",
         "authors": AUTHORS,
         "version": __version__,

@@ -6,10 +6,9 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
+from .dataset_descriptor import DESCRIPTOR
 from .dataset_sums import SUMS, faults_of_sums, sha256_of
 from .recorded import RecordError
-
-DESCRIPTOR = "datapackage.json"
 
 
 def faults_of_package(folder: Path, identity: str | None = None) -> list[str]:

@@ -121,16 +121,12 @@ def _record_folder(context, parameter, folder: Path) -> Path:
     return folder
 
 
-def _replay(context, parameter, replay: bool) -> bool:
-    if replay and context.params.get("against"):
-        raise click.BadParameter("compares with the record, and --against with a package: give one")
-    return replay
-
-
-def _against(context, parameter, folder: Path | None) -> Path | None:
-    if folder and context.params.get("replay"):
-        raise click.BadParameter("compares with a package, and --replay with the record: give one")
-    return folder
+def _one_of_two(context, parameter, given):
+    if given and (context.params.get("against") or context.params.get("replay")):
+        raise click.BadParameter(
+            "--replay compares with the record, and --against with a package: give one"
+        )
+    return given
 
 
 def _profile_name(context, parameter, name: str | None) -> str | None:
@@ -210,7 +206,7 @@ replay = click.option(
     "--replay",
     is_flag=True,
     is_eager=True,
-    callback=_replay,
+    callback=_one_of_two,
     help="Run only --engine and --engines (by default native; none: not one) here, on recorded packings, and take the runs of all "
     "others from the record; with none, of all its packings unless --seeds or --tier say otherwise.",
 )
@@ -219,7 +215,7 @@ against = click.option(
     metavar="DIR",
     type=click.Path(path_type=Path),
     is_eager=True,
-    callback=_against,
+    callback=_one_of_two,
     help="As --replay, with the runs of the package in DIR, which `crossdem dataset build` made: it is verified first.",
 )
 record = click.option(

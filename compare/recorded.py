@@ -60,6 +60,7 @@ class Record:
     packings: Mapping[int, str]  # packing.csv by seed
     about_packings: Mapping[int, dict]  # packing.json by seed
     about: dict  # manifest.json: what, when, with what
+    source: str = "the record"  # for people
 
     @property
     def seeds(self) -> tuple[int, ...]:

@@ -12,10 +12,10 @@ from .recorded import Record, RecordError
 from .wording import listed, packings
 
 
-def said_of(others: Ensemble) -> str:
-    """What of a comparison comes from the record, for people."""
+def said_of(record: Record, others: Ensemble) -> str:
+    """What of a comparison comes from `record`, for people."""
     counted = packings(len({seed for _, seed, _ in others.manifests}), others.runs_each)
-    return f"from the record: {counted} of {listed(others.engines)}"
+    return f"from {record.source}: {counted} of {listed(others.engines)}"
 
 
 def replayed(record: Record, engines: Sequence[str], seeds: int | None, twins: int) -> Ensemble:
@@ -27,7 +27,7 @@ def replayed(record: Record, engines: Sequence[str], seeds: int | None, twins: i
     missing = [seed for seed in range(1, seeds + 1) if seed not in record.packings]
     if missing:
         has = f"{len(record.seeds)} packings, and not seed {missing[0]}"
-        raise RecordError([f"the record has {has}: ask for fewer --seeds, or another --tier"])
+        raise RecordError([f"{record.source} has {has}: ask for fewer --seeds, or another --tier"])
     others = record.ensemble.selected(
         run
         for run in record.ensemble.manifests
@@ -37,7 +37,7 @@ def replayed(record: Record, engines: Sequence[str], seeds: int | None, twins: i
         has = listed(record.ensemble.engines)
         raise RecordError(
             [
-                f"the record of this case holds runs of {has} alone: name another engine to run here, with --engines"
+                f"{record.source} holds runs of this case by {has} alone: name another engine to run here, with --engines"
             ]
         )
     return others

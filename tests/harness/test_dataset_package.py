@@ -22,7 +22,7 @@ from crossdem.adapters.motion_file import DATASETS
 from crossdem.adapters.solver import find_solver
 from crossdem.compare.cli import main
 from crossdem.compare.dataset_documents import TIMED
-from crossdem.compare.dataset_package import read_package
+from crossdem.compare.dataset_record import read_package
 from crossdem.compare.dataset_sums import SUMS, files_in, sha256_of, write_sums
 
 NATIVE = ("--engines", "native", "--seeds", "1", "--native-seeds", "2", "--jobs", "2")
@@ -134,6 +134,17 @@ def test_other_runs_of_the_same_versions_differ_in_nothing_but_times(package, ca
     assert [name for name in vary if not any(fnmatchcase(name, key) for key in TIMED)] == []
 
 
+def test_titles_and_descriptions_say_what_was_changed_in_the_case(case_file, tmp_path):
+    change = "contact.particle_wall.friction=0.1"
+    package = tmp_path / "package"
+    assert build(case_file, package, tmp_path / "work", *NATIVE, "--set", change) == 0
+    citation = yaml.safe_load((package / "CITATION.cff").read_text(encoding="utf-8"))
+    crate = (package / "ro-crate-metadata.json").read_text(encoding="utf-8")
+    for told in (descriptor(package), {"description": citation["abstract"]} | citation):
+        assert f"changed: {change}" in told["title"] and f"changed: {change}" in told["description"]
+    assert f"changed: {change}" in crate
+
+
 def test_a_failed_engine_leaves_no_package(case_file, tmp_path, fake, capsys):
     fake.fault("crash")
     options = ("--engines", "native,liggghts", "--seeds", "1")
@@ -218,7 +229,7 @@ def test_the_command_of_a_package_with_a_users_code_names_it(case_file, tmp_path
     own = ["--engines", "native", "--engine", str(tmp_path / "door.toml"), "--seeds", "1"]
     assert build(case_file, tmp_path / "package", tmp_path / "work", *own) == 0
     command = json.loads((tmp_path / "package" / "provenance.json").read_bytes())["command"]
-    assert "--engines native --seeds 1 " in command and " --engine door.toml " in command
+    assert "--engines native --engine door.toml --seeds 1 " in command
     assert str(tmp_path) not in command
 
 

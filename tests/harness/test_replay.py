@@ -60,7 +60,9 @@ def test_more_packings_than_recorded_are_refused_with_their_number(records, tmp_
 
 @pytest.mark.parametrize("engines", [[], ["native"]], ids=["none", "native"])
 def test_one_engine_that_is_recorded_and_run_alone_is_no_comparison(engines):
-    with pytest.raises(RecordError, match="runs of native alone: name another engine to run here"):
+    with pytest.raises(
+        RecordError, match="runs of this case by native alone: name another engine to run here"
+    ):
         replayed(record(engines=("native",)), engines, 2, 1)
 
 
