@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 
 from .dataset_faults import RESISTANCE_COLUMNS, faults
+from .files import refuse_special_files
 from .motion_file import Motion, MotionFileError, read_motion, write_motion
 
 __all__ = ["RESISTANCE_COLUMNS", "Dataset", "DatasetError", "Motion", "read_motion", "write_motion"]
@@ -106,6 +107,7 @@ class Dataset:
         """The run in `folder`. Raises DatasetError for a folder that is not one, is damaged, or was changed by hand."""
         folder = Path(folder)
         try:
+            refuse_special_files(folder)
             manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
             case_bytes = (folder / "inputs" / "case.json").read_bytes()
             packing_bytes = (folder / "inputs" / "packing.csv").read_bytes()

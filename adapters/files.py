@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all."""
+"""Files that are there whole or not at all, and places that only look like files."""
 
 import os
 from pathlib import Path
@@ -20,3 +20,10 @@ def write_whole(path: Path, content: bytes) -> None:
     except BaseException:
         partial.unlink(missing_ok=True)
         raise
+
+
+def refuse_special_files(folder: Path) -> None:
+    """Raises OSError for a pipe, socket or device in `folder`, or its folders: who opens one may wait forever."""
+    for place in folder.rglob("*"):
+        if place.exists() and not (place.is_file() or place.is_dir()):
+            raise OSError(f"{place} is neither a file nor a folder")

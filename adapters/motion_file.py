@@ -96,7 +96,7 @@ def read_motion(path: Path) -> tuple[Motion, np.ndarray]:
         with h5py.File(path, "r") as file:
 
             def values(group: h5py.Group, name: str) -> np.ndarray:
-                return _read(group[name], most_bytes)
+                return _read(_own(group, name), most_bytes)
 
             soil = file["particles/soil"]
             ids = values(soil, "id")
@@ -117,10 +117,21 @@ def read_motion(path: Path) -> tuple[Motion, np.ndarray]:
         raise MotionFileError(f"{path}: not a motion file of crossdem ({error})") from error
 
 
+def _own(group: h5py.Group, path: str) -> h5py.Dataset:
+    """What lies at `path` below `group` in the file itself: a link may lead into any other file of the machine."""
+    for name in path.split("/"):
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise ValueError(f"{group.name} holds no {name} of its own")
+        group = group[name]
+    return group
+
+
 def _read(dataset: h5py.Dataset, most_bytes: int) -> np.ndarray:
     """All numbers of `dataset`. They lie in the file as they are: what claims more bytes than it has, claims too much."""
     if dataset.dtype.kind not in "iuf":
         raise TypeError(f"{dataset.name} does not hold numbers")
+    if dataset.external or dataset.is_virtual:
+        raise ValueError(f"the numbers of {dataset.name} are those of another file")
     if dataset.nbytes > most_bytes:
         raise ValueError(f"{dataset.name} is larger than its file")
     return dataset[()]

@@ -14,6 +14,7 @@ from .attempt import Attempt
 from .dataset import Dataset, DatasetError
 from .dataset_faults import SCHEMA_VERSION, bar_speed_m_s
 from .engine import OUTPUT, Declined, Engine, EngineFailure
+from .files import refuse_special_files
 from .machine import machine_facts
 from .process import Ending, LineCounter, Process
 from .run_folder import RunRequest, prepare, run_name
@@ -100,6 +101,12 @@ class Run:
             raise EngineFailure(
                 f"{self.ending} {self._stage()}" + (f": {complaint}" if complaint else "")
             )
+        try:
+            refuse_special_files(self.work_dir)
+        except OSError as error:
+            raise EngineFailure(
+                f"ended with status 0, but what it left cannot be read: {error}"
+            ) from error
         try:
             return self.engine.read_output(
                 self.case, self.request.packing, self.work_dir, self._manifest()

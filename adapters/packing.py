@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from .case import Case, CaseError
+from .files import refuse_special_files
 from .solver import call_solver, messages, solver_sha256
 
 # Each column of packing.csv with its definition; the last part of a name is its unit.
@@ -51,6 +52,7 @@ class Packing:
         """Raises PackingError when a file is missing, torn or does not fit the other."""
         folder = Path(folder)
         try:
+            refuse_special_files(folder)
             table = (folder / "packing.csv").read_bytes()
             about = json.loads((folder / "packing.json").read_bytes())
             particles = pd.read_csv(folder / "packing.csv", float_precision="round_trip")

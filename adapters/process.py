@@ -115,12 +115,11 @@ class LineCounter:
         self.lines = 0
 
     def update(self) -> int:
-        try:
-            with open(self._path, "rb") as file:
-                file.seek(self._read)
-                new = file.read()
-        except FileNotFoundError:
+        if not self._path.is_file():  # or a pipe, which would have us wait
             return self.lines
+        with open(self._path, "rb") as file:
+            file.seek(self._read)
+            new = file.read()
         self._read += len(new)
         self.lines += new.count(b"\n")
         return self.lines

@@ -56,7 +56,7 @@ def check(**arguments):
     help="How large the ensemble of the bed is.",
 )
 @click.option("--bed", is_flag=True, help="Run the bed whatever the ladder says.")
-@options.taking(options.out, options.jobs)
+@options.taking(options.out_at("results/ENGINE"), options.jobs)
 def conform(**arguments):
     """Say where a code of your own stands: the ladder, then the bed of CASE beside recorded runs of the other codes.
 
@@ -125,7 +125,7 @@ def resolve(**arguments):
 @click.argument(
     "folders", metavar="DATASET...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@options.out
+@options.out_at("results/NAME-compare")
 def compare(**arguments):
     """Compare runs that exist: folders such as results/bar_penetration/runs/*."""
     return commands.compare(**arguments)
@@ -135,7 +135,7 @@ def compare(**arguments):
 @click.argument("folder", metavar="DATASET", type=click.Path(path_type=Path))
 @click.option("--vtk", is_flag=True, help="PVD and VTP files, which ParaView opens.")
 @click.option("--h5md", is_flag=True, help="One H5MD file in three dimensions.")
-@options.out
+@options.out_at("results/RUN-export")
 def export(**arguments):
     """Write the motion of a run, such as results/bar_penetration/runs/native-seed1-..., for other programs."""
     return commands.export(**arguments)

@@ -39,11 +39,11 @@ def sums_text(sums: dict[str, str]) -> str:
 
 def faults_of_sums(folder: Path) -> Iterator[str]:
     """A line for each file that was changed, is missing or was added, and for each line of SUMS that is none."""
-    try:
-        text = (folder / SUMS).read_bytes().decode("utf-8")
-    except FileNotFoundError:
+    if not (folder / SUMS).is_file():
         yield f"{SUMS} is missing"
         return
+    try:
+        text = (folder / SUMS).read_bytes().decode("utf-8")
     except (OSError, ValueError) as error:
         yield f"{SUMS} cannot be read: {error}"
         return
@@ -62,6 +62,8 @@ def faults_of_sums(folder: Path) -> Iterator[str]:
         path = folder / name
         if path.is_symlink():  # whose content is not of the folder
             yield f"{name} is a link"
+        elif not path.is_file():
+            yield f"{name} is no file"
         elif sha256_of(path) != sums[name]:
             yield f"{name} was changed"
     for path in sorted(folder.rglob("*")):

@@ -186,12 +186,15 @@ ranks = click.option(
     show_default=True,
     help="MPI processes per run of LIGGGHTS; the other engines take one.",
 )
-out = click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Output folder. [default: results/NAME of the case, results/NAME-HASH with --set, "
-    "results/NAME-compare for compare, results/RUN-export for export]",
-)
+
+
+def out_at(default: str):
+    return click.option(
+        "--out", type=click.Path(path_type=Path), help=f"Output folder. [default: {default}]"
+    )
+
+
+out = out_at("results/NAME of the case, results/NAME-HASH with --set")
 
 
 def _jobs(help_text: str):

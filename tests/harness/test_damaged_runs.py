@@ -4,6 +4,7 @@ time and memory. The damage is always the same; `tests/nightly` has more of it.
 
 import hashlib
 import json
+import os
 import shutil
 
 import h5py
@@ -18,6 +19,7 @@ from crossdem.adapters.contract import Columns, read_contract
 from crossdem.adapters.dataset import Dataset, DatasetError
 from crossdem.adapters.engine import EngineFailure
 from crossdem.adapters.engine_file import EngineFileError, read_engine
+from crossdem.adapters.packing import Packing, PackingError
 from crossdem.adapters.run import RunRequest, run_all
 
 FILES = ("manifest.json", "motion.h5", "resistance.csv", "inputs/case.json", "inputs/packing.csv")
@@ -95,6 +97,47 @@ def test_a_motion_file_that_claims_what_it_has_not(name, kind, run, folder):
     with pytest.raises(DatasetError):
         Dataset.read(folder)
     read_damaged(run, folder, "motion.h5", place.read_bytes())
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("kind", ["soft link", "external link", "external numbers", "virtual"])
+def test_a_motion_file_whose_numbers_are_those_of_another_place(name, kind, run, folder, tmp_path):
+    shutil.copyfile(run / "motion.h5", tmp_path / "other.h5")
+    place = folder / "motion.h5"
+    with h5py.File(place, "r+") as file:
+        numbers = file[name][()]
+        del file[name]
+        if kind == "soft link":
+            file["elsewhere"] = numbers
+            file[name] = h5py.SoftLink("/elsewhere")
+        elif kind == "external link":
+            file[name] = h5py.ExternalLink(str(tmp_path / "other.h5"), name)
+        elif kind == "external numbers":
+            (tmp_path / "numbers").write_bytes(numbers.tobytes())
+            stored = [(str(tmp_path / "numbers"), 0, numbers.nbytes)]
+            file.create_dataset(name, numbers.shape, numbers.dtype, external=stored)
+        else:
+            layout = h5py.VirtualLayout(numbers.shape, numbers.dtype)
+            layout[...] = h5py.VirtualSource(tmp_path / "other.h5", name, numbers.shape)
+            file.create_virtual_dataset(name, layout)
+        np.testing.assert_array_equal(file[name][()], numbers)  # as the library reads it
+    try:
+        with pytest.raises(DatasetError, match="of its own|of another file"):
+            Dataset.read(folder)
+    finally:
+        shutil.copyfile(run / "motion.h5", place)
+
+
+@pytest.mark.parametrize("name", [*FILES, "inputs/packing.json"])
+def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(name, run, folder):
+    (folder / name).unlink()
+    os.mkfifo(folder / name)
+    try:
+        survives(lambda: Dataset.read(folder), DatasetError)
+        survives(lambda: Packing.read(folder / "inputs"), PackingError)
+    finally:
+        (folder / name).unlink()
+        shutil.copyfile(run / name, folder / name)
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import shutil
 import subprocess
 import tarfile
@@ -98,6 +99,14 @@ def test_an_added_file_folder_or_link_is_found(copy, capsys):
     code, lines = verify(copy, capsys)
     assert code == ExitCode.DIFFERS
     assert {"runs/more.csv was added", "empty/ was added", "link was added"} <= set(lines)
+
+
+def test_a_pipe_in_the_place_of_a_file_is_found_and_not_waited_for(copy, capsys):
+    for name, told in (("case.json", "case.json is no file"), (SUMS, f"{SUMS} is missing")):
+        (copy / name).unlink()
+        os.mkfifo(copy / name)
+        code, lines = verify(copy, capsys)
+        assert code == ExitCode.DIFFERS and told in lines
 
 
 def test_sums_written_anew_do_not_hide_a_change(copy, package, capsys):

@@ -113,6 +113,7 @@ def test_other_names_units_and_files_are_read_as_described(
         ("writes nothing", "no readable run.json"),
         ("writes nothing", "there is no motion.csv"),
         ("no run.json", "no readable run.json"),
+        ("pipes", "is neither a file nor a folder"),
         ("torn run.json", "no readable run.json"),
         ("not completed", "run.json: completed is false, expected true"),
         ("another engine", 'run.json: engine is "another", expected "door"'),
