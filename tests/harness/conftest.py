@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 from small_case import small_case
 
 from crossdem.adapters.packing import make_packing
@@ -16,6 +16,7 @@ HERE = Path(__file__).parent
 settings.register_profile(
     "crossdem",
     derandomize=True,
+    phases=[Phase.explicit, Phase.generate],  # to shrink a case takes longer than a test may
     database=None,
     deadline=None,
     max_examples=int(os.environ.get("CROSSDEM_EXAMPLES", "25")),
