@@ -20,6 +20,7 @@ OPTIONS = {
         "particle_wall": {"rolling_friction": 0.1},
     }
 }
+ROLLING = {pair: {"rolling_friction": 0.1} for pair in ("particle_particle", "particle_wall")}
 LONG = {"time": {"penetration_s": 1.0}}
 WAYS = {
     "paper": {},
@@ -29,6 +30,7 @@ WAYS = {
         "time": {"step_s": 2.5e-5},
     },
     "liggghts": {"scheme": {"name": "liggghts"}},
+    "liggghts with rolling resistance": {"scheme": {"name": "liggghts"}, "contact": ROLLING},
     "liggghts_averaged": {"scheme": {"name": "liggghts_averaged"}},
     "yade": {"scheme": {"name": "yade"}},
     "yade_averaged": {"scheme": {"name": "yade_averaged"}},
