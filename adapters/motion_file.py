@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from secrets import token_hex
 
 import h5py
 import numpy as np
@@ -52,9 +53,11 @@ def write_motion(
 ) -> None:
     """Write `motion` of particles with radii (N,) in a container of `box_m` (width, height); doubles, uncompressed.
 
-    Raises OSError. It is made in memory: on a full disk the library would have more to say than that.
+    Raises OSError. It is made in memory, where it takes twice its size: on a full disk the library would have more to
+    say than that.
     """
-    with h5py.File(path.name, "w", driver="core", backing_store=False) as file:
+    unused = f"{path.name}-{token_hex(8)}"  # a file of this name in the current folder would be read
+    with h5py.File(unused, "w", driver="core", backing_store=False) as file:
         write_header(file, engine, version)
         soil = file.create_group("particles/soil")
         box = soil.create_group("box")

@@ -86,18 +86,19 @@ class Process:
 
 
 def wait_for_any(processes: Sequence[Process], at_most_s: float) -> None:
-    """Until one of them has ended, of which none was seen to end before; at once where there is none."""
+    """Until one of them has ended, of which none was seen to end before, or `at_most_s`; at once where there is none."""
     if not processes:
         return
     with ExitStack() as descriptors:
-        ends = []
+        ends = select.poll()
         try:
             for process in processes:
-                ends.append(os.pidfd_open(process.id))
-                descriptors.callback(os.close, ends[-1])
+                end = os.pidfd_open(process.id)
+                descriptors.callback(os.close, end)
+                ends.register(end, select.POLLIN)
         except OSError:  # containers may forbid it
-            ends = []
-        select.select(ends, [], [], at_most_s)
+            ends = select.poll()
+        ends.poll(1e3 * at_most_s)
 
 
 def bound_to_us() -> list[str]:

@@ -277,9 +277,8 @@ class _Bed:
         if abs(e_s) > law["friction"] * pressed:  # Eq 9
             f_s = e_s = math.copysign(law["friction"] * pressed, e_s)
 
-        e_r += law["shear_stiffness_N_m"] * self.rolled(
-            i, touch
-        )  # as Eqs 7 and 9, without a dashpot
+        # as Eqs 7 and 9, without a dashpot
+        e_r += law["shear_stiffness_N_m"] * self.rolled(i, touch)
         e_r = math.copysign(min(abs(e_r), law.get("rolling_friction", 0.0) * pressed), e_r)
         self.springs[i, touch.partner] = (e_n, e_s, e_r)
         return f_n, f_s, e_r

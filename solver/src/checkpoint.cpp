@@ -1,44 +1,60 @@
 #include "checkpoint.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <streambuf>
 
 #include "archive.hpp"
-#include "crossdem/version.hpp"
-#include "text_file.hpp"
 
 namespace crossdem {
 
 template <class Archive>
+void serialize(Archive& archive, FileMark& mark) {
+  archive(mark.bytes, mark.checksum);
+}
+
+template <class Archive>
 void serialize(Archive& archive, Progress& p) {
-  archive(p.rested, p.recorded, p.frames, p.samples, p.resistance_bytes, p.ledger_bytes);
+  archive(p.rested, p.recorded, p.frames, p.samples, p.resistance, p.ledger, p.spool);
 }
 
 namespace {
 
 constexpr const char* file_name = "checkpoint";
 
-std::uint64_t checksum(std::string_view bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+std::uint64_t checksum(std::string_view bytes) {
+  Checksum sum;
+  sum.add(bytes);
+  return sum.value();
+}
 
 std::uint64_t checksum(const Packing& packing) {
-  std::ostringstream bytes;
-  OutArchive archive(bytes);
-  archive(packing.radius, packing.position, packing.velocity, packing.spin, packing.bar_tip.value_or(0.0));
-  return checksum(bytes.view());
+  Checksum sum;
+  sum.add(packing.radius);
+  sum.add(packing.position);
+  sum.add(packing.velocity);
+  sum.add(packing.spin);
+  sum.add(std::vector{packing.bar_tip.value_or(0.0)});
+  return sum.value();
+}
+
+/// Of the program that runs: its state and its bits are those of this build alone.
+std::uint64_t checksum_of_program() {
+  const Beginning program = beginning_of("/proc/self/exe", std::numeric_limits<std::uintmax_t>::max());
+  if (program.bytes == 0) throw FileError("/proc/self/exe", "cannot be read");
+  return program.checksum.value();
 }
 
 /// What stands before the state.
 struct Head {
-  std::array<char, 16> mark{'c', 'r', 'o', 's', 's', 'd', 'e', 'm', ' ', 'r', 'u', 'n', ' ', ' ', '1', '\n'};
-  std::uint64_t build = checksum(build_line());
+  std::array<char, 16> mark{'c', 'r', 'o', 's', 's', 'd', 'e', 'm', ' ', 'r', 'u', 'n', ' ', ' ', '2', '\n'};
+  std::uint64_t program = 0;
   std::uint64_t setup = 0;
   std::uint64_t packing = 0;
   std::uint64_t bytes = 0;
@@ -50,32 +66,40 @@ static_assert(sizeof(Head) == sizeof(Head::Bytes));
 
 std::filesystem::path beside(const std::filesystem::path& path) { return path.string() + ".part"; }
 
-void force_to_disk(const std::filesystem::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool forced = file >= 0 && fsync(file) == 0;
-  if (file >= 0) close(file);
-  if (!forced) throw WriteError(path, "cannot be forced to the disk");
-}
+/// To read what is in memory already.
+struct InMemory : std::streambuf {
+  explicit InMemory(std::string& text) { setg(text.data(), text.data(), text.data() + text.size()); }
+};
 
 }  // namespace
 
 CheckpointFile::CheckpointFile(const std::filesystem::path& folder, const Case& setup, const Packing& packing)
-    : path_(folder / file_name), case_(checksum(canonical_json(setup))), packing_(checksum(packing)) {}
+    : path_(folder / file_name),
+      case_(checksum(canonical_json(setup))),
+      packing_(checksum(packing)),
+      program_(checksum_of_program()) {}
 
 bool CheckpointFile::is_in(const std::filesystem::path& folder) {
   std::error_code none;
   return std::filesystem::is_regular_file(folder / file_name, none);
 }
 
-std::string CheckpointFile::run() const {
-  std::ostringstream name;
-  name << std::hex << case_ << "-" << packing_;
-  return name.str();
+bool CheckpointFile::was_begun() const {
+  std::error_code error;
+  const std::filesystem::path part = beside(path_);
+  const auto files = std::filesystem::directory_iterator(path_.parent_path(), error);
+  if (error || std::distance(begin(files), end(files)) != 1) return false;
+  if (!std::filesystem::is_regular_file(part, error)) return false;
+  const Head head;
+  const std::uintmax_t size = std::filesystem::file_size(part, error);
+  const std::string_view mark(head.mark.data(), std::min<std::uintmax_t>(size, head.mark.size()));
+  return !error && beginning_of(part, mark.size()).checksum.value() == checksum(mark);
 }
 
-void CheckpointFile::remove_unfinished(const std::filesystem::path& folder) {
-  std::error_code none;
-  std::filesystem::remove(beside(folder / file_name), none);
+std::string CheckpointFile::run() const {
+  std::ostringstream name;
+  name << std::hex << case_ << "-" << packing_ << "-" << program_;
+  return name.str();
 }
 
 void CheckpointFile::write(const Progress& progress, const Simulation& simulation) const {
@@ -85,48 +109,56 @@ void CheckpointFile::write(const Progress& progress, const Simulation& simulatio
   Head head;
   head.setup = case_;
   head.packing = packing_;
+  head.program = program_;
   head.bytes = state.view().size();
   head.state = checksum(state.view());
   const auto head_bytes = std::bit_cast<Head::Bytes>(head);
 
   const std::filesystem::path part = beside(path_);
   std::ofstream out(part, std::ios::binary);
+  if (!out) throw FileError(part, std::string("cannot be written: ") + std::strerror(errno));
   out.write(head_bytes.data(), head_bytes.size());
   out.write(state.view().data(), static_cast<std::streamsize>(state.view().size()));
   out.close();
-  if (!out) throw WriteError(part, "cannot be written; is the disk full?");
-  force_to_disk(part);
   std::error_code error;
+  if (!out) {
+    std::filesystem::remove(part, error);  // which makes room
+    throw WriteError(part, "cannot be written; is the disk full?");
+  }
+  force_to_disk(part);
   std::filesystem::rename(part, path_, error);
   if (error) throw WriteError(path_, "cannot be put in its place: " + error.message());
+  force_to_disk(path_.parent_path());
 }
 
 void CheckpointFile::read(Progress& progress, Simulation& simulation) const {
-  const auto refuse = [&](const std::string& why) {
-    return FileError(path_, why + "; to start afresh, choose another folder or remove this one");
-  };
-  const std::string text = read_text(path_, std::numeric_limits<std::uintmax_t>::max());
-  const auto damaged = [&] { return refuse("is damaged, the run cannot be carried on from it"); };
-  if (text.size() < sizeof(Head)) throw damaged();
+  const auto damaged = [&] { return refusal(path_, "is damaged"); };
   Head::Bytes head_bytes{};
-  std::copy_n(text.begin(), head_bytes.size(), head_bytes.begin());
+  std::ifstream in(path_, std::ios::binary);
+  in.read(head_bytes.data(), head_bytes.size());
   const Head head = std::bit_cast<Head>(head_bytes);
-  const std::string_view state = std::string_view(text).substr(sizeof(Head));
-  if (head.mark != Head{}.mark || head.bytes != state.size() || head.state != checksum(state)) throw damaged();
-  if (head.build != Head{}.build) throw refuse("was written by another build of crossdem-solver");
-  if (head.setup != case_) throw refuse("is of another case");
-  if (head.packing != packing_) throw refuse("is of another packing");
-  try {
-    std::istringstream in{std::string(state)};
-    InArchive{in}(progress);
-    simulation.load(in);
-  } catch (const cereal::Exception&) {
-    throw damaged();
-  }
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path_, error);
+  if (!in || error || head.mark != Head{}.mark || size - sizeof(Head) != head.bytes) throw damaged();
+  std::string state(head.bytes, '\0');
+  in.read(state.data(), static_cast<std::streamsize>(state.size()));
+  if (!in || head.state != checksum(state)) throw damaged();
+  if (head.program != program_) throw refusal(path_, "was written by another build of crossdem-solver");
+  if (head.setup != case_) throw refusal(path_, "is of another case");
+  if (head.packing != packing_) throw refusal(path_, "is of another packing");
+  InMemory bytes(state);
+  std::istream from(&bytes);
+  InArchive{from}(progress);
+  simulation.load(from);
+}
+
+FileError CheckpointFile::refusal(const std::filesystem::path& file, const std::string& why) const {
+  return {file, why + "; to start afresh, choose another folder, or remove " + path_.parent_path().string()};
 }
 
 void CheckpointFile::remove() const {
   std::error_code none;
+  std::filesystem::remove(beside(path_), none);
   std::filesystem::remove(path_, none);
 }
 

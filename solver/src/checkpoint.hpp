@@ -1,15 +1,21 @@
 #pragma once
 // A run on its way, in a file from which it can be carried on to the last bit.
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 
 #include "crossdem/packing.hpp"
 #include "crossdem/simulation.hpp"
+#include "text_file.hpp"
 
 namespace crossdem {
+
+/// How much of a file belongs to a checkpoint.
+struct FileMark {
+  std::uintmax_t bytes = 0;
+  std::uint64_t checksum = Checksum().value();
+};
 
 /// How far a run has come, and how much of its files belongs to that.
 struct Progress {
@@ -17,8 +23,9 @@ struct Progress {
   long recorded = -1;  // steps since the rest was over, of the latest output; -1: none
   long frames = 0;
   long samples = 0;
-  std::uintmax_t resistance_bytes = 0;
-  std::uintmax_t ledger_bytes = 0;
+  FileMark resistance;
+  FileMark ledger;
+  FileMark spool;
 };
 
 /// The file `checkpoint` of a run's folder. It is there as a whole or not at all.
@@ -29,18 +36,21 @@ class CheckpointFile {
   /// Whether `folder` holds one.
   static bool is_in(const std::filesystem::path& folder);
 
-  /// Names case and packing [hex].
+  /// Whether the folder holds nothing but the first one, which was being written when its run was cut short.
+  [[nodiscard]] bool was_begun() const;
+
+  /// Names case, packing and program [hex].
   [[nodiscard]] std::string run() const;
 
-  /// Removes one that was being written when its run was cut short.
-  static void remove_unfinished(const std::filesystem::path& folder);
-
-  /// In the place of the one before. Throws WriteError.
+  /// In the place of the one before. Throws WriteError, FileError.
   void write(const Progress& progress, const Simulation& simulation) const;
 
   /// Carries `simulation`, of the same case and packing, to where it was. Throws FileError where the file is damaged,
-  /// or of another case, packing or build of the solver.
+  /// or of another case, packing or program.
   void read(Progress& progress, Simulation& simulation) const;
+
+  /// Why the run cannot be carried on.
+  [[nodiscard]] FileError refusal(const std::filesystem::path& file, const std::string& why) const;
 
   void remove() const;
 
@@ -48,6 +58,7 @@ class CheckpointFile {
   std::filesystem::path path_;
   std::uint64_t case_;  // checksums
   std::uint64_t packing_;
+  std::uint64_t program_;
 };
 
 }  // namespace crossdem

@@ -127,7 +127,7 @@ class Contacts {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(skin_, pairs_, on_surfaces_, listed_at_, bar_listed_at_, listed_steps_);
-    searched_at_.clear();
+    if constexpr (Archive::is_loading::value) searched_at_.clear();
   }
 
  private:

@@ -7,8 +7,7 @@
 namespace crossdem {
 namespace {
 
-constexpr std::size_t clock = 3;         // step, time, tip of the bar or NaN, before the particles of a frame
-constexpr std::size_t per_particle = 6;  // x, y, velocity x, y, angle, spin
+constexpr std::size_t clock = 3;  // step, time, tip of the bar or NaN, before the particles of a frame
 
 std::streamsize bytes_of(std::size_t doubles) { return static_cast<std::streamsize>(doubles * sizeof(double)); }
 
@@ -25,10 +24,9 @@ void for_arrays(AnyParticles& particles, Function function) {
 
 }  // namespace
 
-FrameSpool::FrameSpool(const std::filesystem::path& path, std::size_t particles, long frames)
-    : path_(path), particles_(particles), frames_(frames) {
-  const std::uintmax_t frame_bytes = sizeof(double) * (clock + per_particle * particles);
-  if (frames > 0) cut_to(path, static_cast<std::uintmax_t>(frames) * frame_bytes);
+FrameSpool::FrameSpool(const std::filesystem::path& path, std::size_t particles, long frames, const Beginning& kept)
+    : path_(path), particles_(particles), frames_(frames), written_(kept) {
+  cut_behind(kept, path);
   const auto in_and_out = std::ios::binary | std::ios::in | std::ios::out;
   file_.open(path, in_and_out | (frames > 0 ? std::ios::ate : std::ios::trunc));
   if (!file_) throw FileError(path_, "cannot be written");
@@ -38,7 +36,10 @@ void FrameSpool::frame(long step, double time, std::optional<double> bar_tip, co
   const double tip = bar_tip.value_or(std::numeric_limits<double>::quiet_NaN());
   const std::array<double, clock> now{static_cast<double>(step), time, tip};
   const auto put = [&](const double* values, std::size_t count) {
-    file_.write(reinterpret_cast<const char*>(values), bytes_of(count));  // NOLINT(*-reinterpret-cast)
+    const std::string_view bytes(reinterpret_cast<const char*>(values),  // NOLINT(*-reinterpret-cast)
+                                 count * sizeof(double));
+    file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    written_.add(bytes);
   };
   put(now.data(), now.size());
   for_arrays(particles, put);

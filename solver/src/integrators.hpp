@@ -12,7 +12,7 @@ namespace crossdem {
 struct Load {
   Vector2 force = Vector2::Zero();  // [N]
   // One of the two, as the scheme has it:
-  double rim = 0.0;     // [N], sum of lever x f_s: the moment of Eq. (12) is -radius x rim
+  double rim = 0.0;     // [N], sum of rim_force: the moment of Eq. (12), and that against rolling, is -radius x rim
   double moment = 0.0;  // [N m], counter-clockwise
 };
 

@@ -3,6 +3,7 @@
 // finite, left the box, exploded or does not settle.
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <limits>
@@ -13,6 +14,7 @@
 #include "crossdem/run.hpp"
 #include "crossdem/simulation.hpp"
 #include "crossdem/version.hpp"
+#include "run_folder.hpp"
 #include "text_file.hpp"
 
 namespace {
@@ -35,13 +37,11 @@ crossdem::Case load(const std::string& file, const std::string& shown_name) {
   return setup;
 }
 
-/// A folder that this call may write into: it is made, or exists and is empty.
-void claim_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw crossdem::FileError(folder, "cannot be made: " + error.message());
-  if (!std::filesystem::is_empty(folder, error) || error)
-    throw crossdem::FileError(folder, "is not an empty folder; nothing was written");
+/// Empty for a number of seconds, finite and not negative.
+std::string seconds_fault(const std::string& text) {
+  double seconds = 0.0;
+  const bool is_sound = CLI::detail::lexical_cast(text, seconds) && std::isfinite(seconds) && seconds >= 0.0;
+  return is_sound ? "" : text + " is no number of seconds; give 0 for at every output";
 }
 
 struct Arguments {
@@ -62,14 +62,13 @@ void resolve(const Arguments& given) {
 
 void pack(const Arguments& given) {
   const crossdem::Case setup = load(given.case_file, given.shown_name);
-  claim_folder(given.output);
+  crossdem::claim_folder(given.output);
   crossdem::write_packing(crossdem::make_packing(setup, given.seed, given.threads), given.output);
 }
 
 void run(const Arguments& given) {
   const crossdem::Case setup = load(given.case_file, given.shown_name);
   crossdem::Packing packing = crossdem::read_packing(given.packing_file, setup);
-  if (!given.checkpoint_every || !crossdem::can_be_carried_on(given.output)) claim_folder(given.output);
   crossdem::run(setup, std::move(packing), given.output, given.threads, given.checkpoint_every);
 }
 
@@ -111,7 +110,7 @@ int command_line(int argc, char** argv) {
       ->add_option("--checkpoint-every", given.checkpoint_every,
                    "keep a checkpoint in the folder, renewed after so many seconds: a run that was cut short goes on "
                    "from there when the same command is given again, to the same bits")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Validator([](const std::string& text) { return seconds_fault(text); }, "SECONDS>=0"));
   CLI::App* measurer = add_command("measure", "print as JSON how long the steps of a run take; write nothing", measure);
   measurer->add_option("--packing", given.packing_file, "packing.csv, with packing.json beside it")->required();
   measurer->add_option("--steps", given.steps, "only so many, from the first on")

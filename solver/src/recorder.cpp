@@ -12,8 +12,8 @@ std::string row_of(Numbers... numbers) {
 
 }  // namespace
 
-ResistanceFile::ResistanceFile(const std::filesystem::path& path, std::uintmax_t keep) : file_(path, keep) {
-  if (keep > 0) return;
+ResistanceFile::ResistanceFile(const std::filesystem::path& path, const Beginning& kept) : file_(path, kept) {
+  if (kept.bytes > 0) return;
   file_.line(
       "time_s,depth_m,force_x_N,force_y_N,tip_force_y_N,shaft_force_y_N,floor_force_y_N,contacts,kinetic_energy_J");
 }
@@ -25,8 +25,8 @@ void ResistanceFile::row(double time, double depth, const Simulation& simulation
              "," + std::to_string(simulation.contacts()) + "," + exact(kinetic_energy(simulation.particles())));
 }
 
-LedgerFile::LedgerFile(const std::filesystem::path& path, std::uintmax_t keep) : file_(path, keep) {
-  if (keep > 0) return;
+LedgerFile::LedgerFile(const std::filesystem::path& path, const Beginning& kept) : file_(path, kept) {
+  if (kept.bytes > 0) return;
   file_.line(
       "time_s,momentum_change_x_Ns,momentum_change_y_Ns,left_wall_x_Ns,left_wall_y_Ns,right_wall_x_Ns,right_wall_y_Ns,"
       "floor_x_Ns,floor_y_Ns,bar_x_Ns,bar_y_Ns,weight_x_Ns,weight_y_Ns,residual_x_Ns,residual_y_Ns,"

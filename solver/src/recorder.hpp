@@ -30,27 +30,29 @@ class MotionFile {
 /// then may take all of it along. Doubles, one frame behind the other.
 class FrameSpool {
  public:
-  /// Goes on behind the first `frames` of what is there. Throws FileError where there are fewer.
-  FrameSpool(const std::filesystem::path& path, std::size_t particles, long frames);
+  /// Goes on behind `kept`, which is `frames` whole frames.
+  FrameSpool(const std::filesystem::path& path, std::size_t particles, long frames, const Beginning& kept);
 
   void frame(long step, double time, std::optional<double> bar_tip, const Particles& particles);
   /// All of them, from the first on.
   void copy_to(MotionFile& motion);
+  [[nodiscard]] const Beginning& written() const { return written_; }
 
  private:
   std::filesystem::path path_;
   std::size_t particles_;
   long frames_;
+  Beginning written_;
   std::fstream file_;
 };
 
 /// resistance.csv: force of the particles on the bar, +y up.
 class ResistanceFile {
  public:
-  /// Both go on behind the first `keep` bytes of what is there.
-  explicit ResistanceFile(const std::filesystem::path& path, std::uintmax_t keep = 0);
+  /// Both go on behind `kept`.
+  explicit ResistanceFile(const std::filesystem::path& path, const Beginning& kept = {});
   void row(double time, double depth, const Simulation& simulation);
-  [[nodiscard]] std::uintmax_t bytes() const { return file_.bytes(); }
+  [[nodiscard]] const Beginning& written() const { return file_.written(); }
 
  private:
   LineFile file_;
@@ -59,9 +61,9 @@ class ResistanceFile {
 /// ledger.csv: the momentum and energy accounts.
 class LedgerFile {
  public:
-  explicit LedgerFile(const std::filesystem::path& path, std::uintmax_t keep = 0);
+  explicit LedgerFile(const std::filesystem::path& path, const Beginning& kept = {});
   void row(double time, const Simulation& simulation);
-  [[nodiscard]] std::uintmax_t bytes() const { return file_.bytes(); }
+  [[nodiscard]] const Beginning& written() const { return file_.written(); }
 
  private:
   LineFile file_;

@@ -7,27 +7,48 @@
 #include "checkpoint.hpp"
 #include "crossdem/version.hpp"
 #include "recorder.hpp"
+#include "run_folder.hpp"
 
 namespace crossdem {
 namespace {
 
+constexpr const char* resistance_file = "resistance.csv";
+constexpr const char* ledger_file = "ledger.csv";
 constexpr const char* motion_file = "motion.h5";
 constexpr const char* spool_file = "frames.f64";
 constexpr const char* end_file = "run.json";  // written last
 
-/// The files of a run, as far as `progress` says.
+/// What of a run's files belongs to its checkpoint.
+struct Kept {
+  Beginning resistance;
+  Beginning ledger;
+  Beginning spool;
+};
+
+/// Throws FileError where they are not as they were then.
+Kept kept_of(const CheckpointFile& checkpoint, const Progress& progress, const std::filesystem::path& folder) {
+  const auto kept = [&](const char* name, const FileMark& mark) {
+    const Beginning found = beginning_of(folder / name, mark.bytes);
+    if (found.bytes == mark.bytes && found.checksum.value() == mark.checksum) return found;
+    throw checkpoint.refusal(folder / name, "is not as the checkpoint says");
+  };
+  return {kept(resistance_file, progress.resistance), kept(ledger_file, progress.ledger),
+          kept(spool_file, progress.spool)};
+}
+
+/// The files of a run, behind what is kept of them.
 class Recording {
  public:
   /// `spools`: the run may be cut short and carried on.
   Recording(const Case& setup, const std::filesystem::path& folder, const Particles& particles, Progress& progress,
-            bool spools)
+            const Kept& kept, bool spools)
       : setup_(setup),
         folder_(folder),
         progress_(progress),
-        resistance_(folder / "resistance.csv", progress.resistance_bytes),
-        ledger_(folder / "ledger.csv", progress.ledger_bytes) {
+        resistance_(folder / resistance_file, kept.resistance),
+        ledger_(folder / ledger_file, kept.ledger) {
     if (spools)
-      spool_.emplace(folder / spool_file, particles.count(), progress.frames);
+      spool_.emplace(folder / spool_file, particles.count(), progress.frames, kept.spool);
     else
       motion_.emplace(folder / motion_file, setup, particles);
   }
@@ -52,16 +73,24 @@ class Recording {
       ++progress_.frames;
     }
     progress_.recorded = step;
-    progress_.resistance_bytes = resistance_.bytes();
-    progress_.ledger_bytes = ledger_.bytes();
+  }
+
+  /// Enters into the progress how far the files go, with all of that on the disk.
+  void mark() {
+    force_to_disk(folder_ / resistance_file);
+    force_to_disk(folder_ / ledger_file);
+    force_to_disk(folder_ / spool_file);
+    progress_.resistance = mark_of(resistance_.written());
+    progress_.ledger = mark_of(ledger_.written());
+    progress_.spool = mark_of(spool_->written());
   }
 
   /// Makes motion.h5 of the frames that were spooled.
   void make_motion(const Particles& particles) {
-    if (!spool_) return;
     motion_.emplace(folder_ / motion_file, setup_, particles);
     spool_->copy_to(*motion_);
     motion_.reset();
+    for (const char* file : {resistance_file, ledger_file, motion_file}) force_to_disk(folder_ / file);
   }
 
  private:
@@ -72,15 +101,19 @@ class Recording {
   LedgerFile ledger_;
   std::optional<MotionFile> motion_;
   std::optional<FrameSpool> spool_;
+
+  static FileMark mark_of(const Beginning& written) { return {written.bytes, written.checksum.value()}; }
 };
 
-/// Writes a checkpoint when one is due; never without an interval.
+/// Writes a checkpoint when one is due.
 class Checkpoints {
  public:
-  Checkpoints(const CheckpointFile& file, std::optional<double> every) : file_(file), every_(every) {}
+  Checkpoints(const CheckpointFile& file, Recording& recording, double every)
+      : file_(file), recording_(recording), every_(every) {}
 
   void look(const Progress& progress, const Simulation& simulation) {
-    if (!every_ || std::chrono::duration<double>(Clock::now() - latest_).count() < *every_) return;
+    if (std::chrono::duration<double>(Clock::now() - latest_).count() < every_) return;
+    recording_.mark();
     file_.write(progress, simulation);
     latest_ = Clock::now();
   }
@@ -88,46 +121,56 @@ class Checkpoints {
  private:
   using Clock = std::chrono::steady_clock;
   const CheckpointFile& file_;
-  std::optional<double> every_;  // [s]
+  Recording& recording_;
+  double every_;  // [s]
   Clock::time_point latest_ = Clock::now();
 };
 
-void remove_spool(const std::filesystem::path& folder) {
+/// Removes what a run that has ended no longer needs; the checkpoint last, which says whose the spool is.
+void remove_checkpoint(const CheckpointFile& checkpoint, const std::filesystem::path& folder) {
   std::error_code none;
-  std::filesystem::remove(folder / spool_file, none);
+  if (CheckpointFile::is_in(folder)) std::filesystem::remove(folder / spool_file, none);
+  checkpoint.remove();
 }
 
-/// Whether the run named so has ended in `folder`. Throws FileError where another one has.
-bool has_ended(const std::filesystem::path& folder, const std::string& name) {
-  const std::filesystem::path end = folder / end_file;
-  if (CheckpointFile::is_in(folder) || !std::filesystem::exists(end)) return false;
-  const nlohmann::json told = nlohmann::json::parse(read_text(end, 1 << 20), nullptr, false);
-  if (!told.is_object() || told.value("run", nlohmann::json()) != name)
-    throw FileError(folder, "holds a run of another case or packing, which has ended; choose another folder");
-  remove_spool(folder);
-  return true;
-}
-
-void write_end(const Case& setup, const std::filesystem::path& folder, const std::string& name,
-               const Progress& progress, const Simulation& simulation) {
-  const nlohmann::json done = {{"completed", true},
-                               {"engine", "native"},
-                               {"run", name},
-                               {"version", version_line()},
-                               {"rest_steps", setup.time.steps_in(setup.time.rest)},
-                               {"penetration_steps", progress.recorded},
-                               {"particles", simulation.particles().count()},
-                               {"frames", progress.frames},
-                               {"samples", progress.samples}};
+/// `error`: why the motion could not go on.
+void write_end(const Case& setup, const std::filesystem::path& folder, const CheckpointFile& checkpoint,
+               const Progress& progress, const Simulation& simulation, const char* error) {
+  nlohmann::json done = {{"completed", error == nullptr},
+                         {"engine", "native"},
+                         {"run", checkpoint.run()},
+                         {"version", version_line()},
+                         {"rest_steps", setup.time.steps_in(setup.time.rest)},
+                         {"penetration_steps", progress.recorded},
+                         {"particles", simulation.particles().count()},
+                         {"frames", progress.frames},
+                         {"samples", progress.samples}};
+  if (error) done["error"] = error;
   LineFile(folder / end_file).line(done.dump(2));
 }
 
-}  // namespace
-
-bool can_be_carried_on(const std::filesystem::path& folder) {
-  CheckpointFile::remove_unfinished(folder);
-  return CheckpointFile::is_in(folder) || std::filesystem::exists(folder / end_file);
+/// Whether the run of `checkpoint` has ended in `folder`. Throws SimulationError where that was because of one,
+/// FileError where another run has ended.
+bool has_ended(const CheckpointFile& checkpoint, const std::filesystem::path& folder) {
+  const auto is_file = [&](const char* name) {
+    std::error_code none;
+    return std::filesystem::is_regular_file(folder / name, none);
+  };
+  if (!is_file(end_file)) return false;
+  const nlohmann::json told = nlohmann::json::parse(read_text(folder / end_file, 1 << 20), nullptr, false);
+  if (!told.is_object() || told.value("run", nlohmann::json()) != checkpoint.run()) {
+    if (CheckpointFile::is_in(folder)) return false;  // it was being written
+    throw checkpoint.refusal(folder / end_file, "is of a run of another case, packing or build, or damaged");
+  }
+  for (const char* name : {motion_file, resistance_file, ledger_file})
+    if (!is_file(name)) throw checkpoint.refusal(folder / name, "is missing");
+  remove_checkpoint(checkpoint, folder);
+  const nlohmann::json error = told.value("error", nlohmann::json());
+  if (error.is_string()) throw SimulationError(error.get<std::string>());
+  return true;
 }
+
+}  // namespace
 
 void run(const Case& setup, Packing packing, const std::filesystem::path& folder, std::size_t threads,
          std::optional<double> checkpoint_every) {
@@ -137,19 +180,36 @@ void run(const Case& setup, Packing packing, const std::filesystem::path& folder
   const long per_sample = time.steps_in(time.sample_interval);
   const long between_outputs = std::gcd(per_sample, time.steps_in(time.frame_interval));
 
+  const FolderLock lock(folder);
   const CheckpointFile checkpoint(folder, setup, packing);
-  if (checkpoint_every && has_ended(folder, checkpoint.run())) return;
+  const bool keeps_checkpoints = checkpoint_every.has_value();
+  if (keeps_checkpoints && has_ended(checkpoint, folder)) return;
+  const bool was_cut_short = CheckpointFile::is_in(folder);
+  if (was_cut_short && !keeps_checkpoints)
+    throw FileError(folder, "holds a run that was cut short; give --checkpoint-every, with which it goes on");
+  if (!was_cut_short && !(keeps_checkpoints && checkpoint.was_begun())) claim_folder(folder);
+
   Simulation simulation(setup, particles_of(packing, setup), packing.bar_tip, threads);
   packing = {};  // a large one takes a tenth of all memory
   Progress progress;
-  if (checkpoint_every) {
-    if (CheckpointFile::is_in(folder))
-      checkpoint.read(progress, simulation);
-    else
-      checkpoint.write(progress, simulation);  // before all other files: where there are any, it is there
+  Kept kept;
+  if (was_cut_short) {
+    checkpoint.read(progress, simulation);
+    kept = kept_of(checkpoint, progress, folder);
+  } else if (keeps_checkpoints) {
+    checkpoint.write(progress, simulation);  // before all other files: where there are any, it is there
   }
-  Checkpoints checkpoints(checkpoint, checkpoint_every);
-  Recording recording(setup, folder, simulation.particles(), progress, checkpoint_every.has_value());
+  Recording recording(setup, folder, simulation.particles(), progress, kept, keeps_checkpoints);
+  std::optional<Checkpoints> checkpoints;
+  if (keeps_checkpoints) checkpoints.emplace(checkpoint, recording, *checkpoint_every);
+  const auto look = [&] {
+    if (checkpoints) checkpoints->look(progress, simulation);
+  };
+  const auto end = [&](const char* error = nullptr) {
+    if (keeps_checkpoints) recording.make_motion(simulation.particles());
+    if (keeps_checkpoints || !error) write_end(setup, folder, checkpoint, progress, simulation, error);
+    if (keeps_checkpoints) remove_checkpoint(checkpoint, folder);
+  };
 
   try {
     while (progress.rested < rest) {
@@ -157,7 +217,7 @@ void run(const Case& setup, Packing packing, const std::filesystem::path& folder
       simulation.advance(steps);
       progress.rested += steps;
       simulation.check();
-      checkpoints.look(progress, simulation);
+      look();
     }
     if (progress.recorded < 0) {
       if (setup.bar) simulation.start_bar();
@@ -165,22 +225,16 @@ void run(const Case& setup, Packing packing, const std::filesystem::path& folder
       recording.record(0, simulation);
     }
     while (progress.recorded < total) {
-      checkpoints.look(progress, simulation);
+      look();
       simulation.advance(between_outputs);
       simulation.check();
       recording.record(progress.recorded + between_outputs, simulation);
     }
-  } catch (const SimulationError&) {
-    recording.make_motion(simulation.particles());
-    checkpoint.remove();
-    remove_spool(folder);
+  } catch (const SimulationError& error) {
+    end(error.what());
     throw;
   }
-  recording.make_motion(simulation.particles());
-  write_end(setup, folder, checkpoint.run(), progress, simulation);
-  if (!checkpoint_every) return;
-  checkpoint.remove();
-  remove_spool(folder);
+  end();
 }
 
 }  // namespace crossdem

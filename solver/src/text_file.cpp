@@ -1,5 +1,8 @@
 #include "text_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <array>
 #include <charconv>
 #include <sstream>
@@ -24,24 +27,44 @@ std::string exact(double number) {
   return {digits.data(), end};
 }
 
-void cut_to(const std::filesystem::path& path, std::uintmax_t bytes) {
+Beginning beginning_of(const std::filesystem::path& path, std::uintmax_t bytes) {
   std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size < bytes) throw FileError(path, "is not there as far as the checkpoint says");
-  std::filesystem::resize_file(path, bytes, error);
+  Beginning found;
+  if (!std::filesystem::is_regular_file(path, error)) return found;
+  std::ifstream in(path, std::ios::binary);
+  std::array<char, 1 << 16> block{};
+  while (in && found.bytes < bytes) {
+    in.read(block.data(), static_cast<std::streamsize>(std::min<std::uintmax_t>(block.size(), bytes - found.bytes)));
+    found.add({block.data(), static_cast<std::size_t>(in.gcount())});
+  }
+  return found;
+}
+
+void cut_behind(const Beginning& kept, const std::filesystem::path& path) {
+  if (kept.bytes == 0) return;
+  std::error_code error;
+  std::filesystem::resize_file(path, kept.bytes, error);
   if (error) throw FileError(path, "cannot be written: " + error.message());
 }
 
-LineFile::LineFile(std::filesystem::path path, std::uintmax_t keep) : path_(std::move(path)), bytes_(keep) {
-  if (keep > 0) cut_to(path_, keep);
-  out_.open(path_, std::ios::binary | (keep > 0 ? std::ios::app : std::ios::trunc));
+void force_to_disk(const std::filesystem::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool forced = file >= 0 && fsync(file) == 0;
+  if (file >= 0) close(file);
+  if (!forced) throw WriteError(path, "cannot be forced to the disk");
+}
+
+LineFile::LineFile(std::filesystem::path path, const Beginning& kept) : path_(std::move(path)), written_(kept) {
+  cut_behind(kept, path_);
+  out_.open(path_, std::ios::binary | (kept.bytes > 0 ? std::ios::app : std::ios::trunc));
   if (!out_) throw FileError(path_, "cannot be written");
 }
 
 void LineFile::line(const std::string& text) {
   out_ << text << '\n' << std::flush;
   if (!out_) throw WriteError(path_, "cannot be written any further; is the disk full?");
-  bytes_ += text.size() + 1;
+  written_.add(text);
+  written_.add("\n");
 }
 
 }  // namespace crossdem

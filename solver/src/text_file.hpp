@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "checksum.hpp"
+
 namespace crossdem {
 
 /// The system refused a file: which, and why.
@@ -27,22 +29,39 @@ std::string read_text(const std::filesystem::path& path, std::uintmax_t most_byt
 /// A number with all the digits it takes to read the same double back.
 std::string exact(double number);
 
-/// Cuts off what stands behind the first `bytes` of a file. Throws FileError where there are fewer.
-void cut_to(const std::filesystem::path& path, std::uintmax_t bytes);
+/// The first bytes of a file.
+struct Beginning {
+  std::uintmax_t bytes = 0;
+  Checksum checksum;
+
+  void add(std::string_view more) {
+    bytes += more.size();
+    checksum.add(more);
+  }
+};
+
+/// The first `bytes` of a file, or as many as there are.
+Beginning beginning_of(const std::filesystem::path& path, std::uintmax_t bytes);
+
+/// Cuts off what stands behind `kept`, and nothing where that is nothing. Throws FileError.
+void cut_behind(const Beginning& kept, const std::filesystem::path& path);
+
+/// Returns when the disk has all that was written to a file or folder. Throws WriteError.
+void force_to_disk(const std::filesystem::path& path);
 
 /// A text file written line by line; each line is handed to the system at once, so that a full disk is an error and
 /// readers see progress.
 class LineFile {
  public:
-  /// Goes on behind the first `keep` bytes of what is there. Throws FileError where there are fewer.
-  explicit LineFile(std::filesystem::path path, std::uintmax_t keep = 0);
+  /// Goes on behind `kept`.
+  explicit LineFile(std::filesystem::path path, const Beginning& kept = {});
   void line(const std::string& text);
-  [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
+  [[nodiscard]] const Beginning& written() const { return written_; }
 
  private:
   std::filesystem::path path_;
   std::ofstream out_;
-  std::uintmax_t bytes_;
+  Beginning written_;
 };
 
 }  // namespace crossdem

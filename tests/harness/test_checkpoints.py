@@ -29,13 +29,18 @@ WAYS = {
         "scheme": {"integrator": "leap_frog", "update_order": "in_turn"},
         "time": {"step_s": 2.5e-5},
     },
+    "paper without a bar": {"bar": None},
+    "paper with spheres by velocity Verlet": {
+        "scheme": {"integrator": "velocity_verlet", "inertia": "sphere"}
+    },
     "liggghts": {"scheme": {"name": "liggghts"}},
     "liggghts with rolling resistance": {"scheme": {"name": "liggghts"}, "contact": ROLLING},
     "liggghts_averaged": {"scheme": {"name": "liggghts_averaged"}},
     "yade": {"scheme": {"name": "yade"}},
     "yade_averaged": {"scheme": {"name": "yade_averaged"}},
 }
-KILLS = 8  # of each way
+KILLS = 8  # of each way, at random moments
+DEPTHS = (0.1, 0.5, 0.9)  # shares of the penetration at which each way is killed in turn
 WRITTEN = {"motion.h5", "resistance.csv", "ledger.csv", "run.json"}
 
 
@@ -43,7 +48,7 @@ def merged(values, changes):
     both = dict(values)
     for key, change in changes.items():
         both[key] = merged(both.get(key, {}), change) if isinstance(change, dict) else change
-    return both
+    return {key: value for key, value in both.items() if value is not None}
 
 
 class Runs:
@@ -77,6 +82,17 @@ class Runs:
             process.kill()
             return process.wait() != 0
 
+    def killed_at(self, row, output, *more):
+        """Kills it once so many rows of resistance are there; returns the folder."""
+        rows = self.folder / output / "resistance.csv"
+        process = subprocess.Popen(self.command(output, "--checkpoint-every", "0", *more))
+        while not (rows.exists() and rows.read_bytes().count(b"\n") > row):
+            assert process.poll() is None
+            time.sleep(0.001)
+        process.kill()
+        assert process.wait() != 0
+        return self.folder / output
+
 
 def contents(folder):
     """All that a run has written, the numbers of motion.h5 as bytes."""
@@ -107,6 +123,22 @@ def test_a_run_that_is_killed_again_and_again_ends_with_the_same_bits(way, tmp_p
         assert contents(tmp_path / output) == contents(tmp_path / "in one go")
 
 
+@pytest.mark.parametrize("way", WAYS)
+def test_a_run_that_is_killed_on_the_way_ends_with_the_same_bits(way, tmp_path):
+    """By other instructions each time, which the bits do not depend on."""
+    runs = Runs(tmp_path, WAYS[way])
+    assert runs.whole("in one go").returncode == 0
+    rows = len((tmp_path / "in one go" / "resistance.csv").read_bytes().splitlines())
+    instructions = ["--instructions", "SCALAR"], [], ["--instructions", "SCALAR"]
+    for share, others in zip(DEPTHS, instructions):
+        runs.killed_at(int(share * rows), "cut short", *others)
+    assert runs.whole("cut short", "--checkpoint-every", "1e9").returncode == 0
+    found, expected = (contents(tmp_path / name) for name in ("cut short", "in one go"))
+    for changed in (found, expected):
+        del changed["run.json"]  # it names the instructions of its end
+    assert found == expected
+
+
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
     return Runs(tmp_path_factory.mktemp("runs"), {})
@@ -115,14 +147,7 @@ def runs(tmp_path_factory):
 @pytest.fixture
 def cut_short(runs, request):
     """The folder of a run that was killed while the bar moved."""
-    folder = runs.folder / request.node.name
-    process = subprocess.Popen(runs.command(folder.name, "--checkpoint-every", "0"))
-    rows = folder / "resistance.csv"
-    while not (rows.exists() and rows.read_bytes().count(b"\n") > 8):
-        assert process.poll() is None
-        time.sleep(0.001)
-    process.kill()
-    process.wait()
+    folder = runs.killed_at(8, request.node.name)
     (folder / "checkpoint.part").unlink(missing_ok=True)
     return folder
 
@@ -135,7 +160,7 @@ def refused(runs, folder, why, **others):
     before = state_of(folder)
     ended = runs.whole(folder.name, "--checkpoint-every", "0", **others)
     assert (ended.returncode, ended.stderr.count("\n")) == (2, 1), ended
-    assert why in ended.stderr and "choose another folder or remove this one" in ended.stderr
+    assert why in ended.stderr and f"choose another folder, or remove {folder}\n" in ended.stderr
     assert state_of(folder) == before
 
 
@@ -169,22 +194,44 @@ def test_a_checkpoint_of_another_case_is_refused(runs, cut_short):
         runs.case.write_text(json.dumps(case))
 
 
+def other_build(folder):
+    """A program that does the same, and differs in a byte."""
+    program = folder / "crossdem-solver"
+    program.write_bytes(find_solver().read_bytes() + b" ")
+    program.chmod(0o755)
+    return program
+
+
+def test_a_checkpoint_or_an_end_of_another_build_is_refused(runs, cut_short, monkeypatch):
+    with monkeypatch.context() as patched:
+        patched.setenv("CROSSDEM_SOLVER", str(other_build(runs.folder)))
+        refused(runs, cut_short, "checkpoint: was written by another build")
+    assert runs.whole(cut_short.name, "--checkpoint-every", "0").returncode == 0
+    monkeypatch.setenv("CROSSDEM_SOLVER", str(runs.folder / "crossdem-solver"))
+    refused(runs, cut_short, "run.json: is of a run of another case, packing or build")
+
+
+@pytest.mark.parametrize("damage", ["cut off", "changed", "missing"])
 @pytest.mark.parametrize("name", ["resistance.csv", "ledger.csv", "frames.f64"])
-def test_output_that_has_lost_its_end_is_told_by_name(runs, cut_short, name):
-    (cut_short / name).write_bytes((cut_short / name).read_bytes()[:100])
-    ended = runs.whole(cut_short.name, "--checkpoint-every", "0")
-    assert ended.returncode == 2
-    assert f"{name}: is not there as far as the checkpoint says" in ended.stderr
+def test_output_that_is_not_as_it_was_is_told_by_name(runs, cut_short, name, damage):
+    whole = (cut_short / name).read_bytes()
+    if damage == "missing":
+        (cut_short / name).unlink()
+    else:
+        (cut_short / name).write_bytes(
+            whole[:100] + (whole[101:] if damage == "cut off" else b"!" + whole[101:])
+        )
+    refused(runs, cut_short, f"{name}: is not as the checkpoint says")
 
 
-def test_a_run_that_has_ended_has_nothing_left_to_do(runs):
+def test_a_run_that_has_ended_has_nothing_left_to_do(runs, cut_short):
     """Also where the kill came between its end and that of its process."""
-    for kept in ("", "frames.f64"):
-        assert runs.whole(f"ended {kept}", "--checkpoint-every", "0").returncode == 0
-        folder = runs.folder / f"ended {kept}"
-        before = state_of(folder)
-        if kept:
-            (folder / kept).write_bytes(b"")
+    left = {name: (cut_short / name).read_bytes() for name in ("checkpoint", "frames.f64")}
+    assert runs.whole(cut_short.name, "--checkpoint-every", "0").returncode == 0
+    folder, before = cut_short, state_of(cut_short)
+    for names in ((), ("checkpoint",), ("checkpoint", "frames.f64")):
+        for name in names:
+            (folder / name).write_bytes(left[name])
         again = runs.whole(folder.name, "--checkpoint-every", "0")
         assert (again.returncode, state_of(folder)) == (0, before), again.stderr
     subprocess.run(
@@ -192,8 +239,75 @@ def test_a_run_that_has_ended_has_nothing_left_to_do(runs):
         check=True,
     )
     other = runs.whole(folder.name, "--checkpoint-every", "0", packing="third")
-    assert other.returncode == 2 and "holds a run of another case or packing" in other.stderr
+    assert other.returncode == 2 and "is of a run of another case, packing" in other.stderr
     assert state_of(folder) == before
+    (folder / "motion.h5").unlink()
+    refused(runs, folder, "motion.h5: is missing")
+
+
+def test_a_second_process_on_the_folder_is_refused_and_the_first_goes_on(runs):
+    first = subprocess.Popen(runs.command("shared", "--checkpoint-every", "0"))
+    while not (runs.folder / "shared" / "checkpoint").exists():
+        time.sleep(0.001)
+    for options in (["--checkpoint-every", "0"], []):
+        second = runs.whole("shared", *options)
+        assert second.returncode == 2
+        assert "another crossdem-solver is writing into it" in second.stderr
+    assert first.wait() == 0
+    assert runs.whole("alone").returncode == 0
+    assert contents(runs.folder / "shared") == contents(runs.folder / "alone")
+
+
+def test_a_run_that_ends_beyond_reason_says_so_again_and_again(runs):
+    """Also where it was killed before its files were cleared away."""
+    sound = runs.case.read_text()
+    stiff = {"step_s": 1e-3, "rest_s": 0.0, "allow_above_eq32": True}
+    try:
+        runs.case.write_text(json.dumps(merged(json.loads(sound), {"time": stiff})))
+        first = runs.whole("exploded", "--checkpoint-every", "0")
+        again = runs.whole("exploded", "--checkpoint-every", "0")
+    finally:
+        runs.case.write_text(sound)
+    assert first.returncode == again.returncode == 3
+    assert first.stderr == again.stderr and "crossdem-solver: " in first.stderr
+    told = json.loads((runs.folder / "exploded" / "run.json").read_bytes())
+    assert told["completed"] is False and told["error"] in first.stderr
+    assert {path.name for path in (runs.folder / "exploded").iterdir()} == WRITTEN
+
+
+def test_a_checkpoint_that_was_cut_short_itself_is_begun_afresh(runs, cut_short):
+    """And what only has its name is left alone."""
+    head = (cut_short / "checkpoint").read_bytes()[:100]
+    for number, begun in enumerate((b"", head[:5], head)):
+        folder = runs.folder / f"begun {number}"
+        folder.mkdir()
+        (folder / "checkpoint.part").write_bytes(begun)
+        assert runs.whole(folder.name, "--checkpoint-every", "0").returncode == 0
+        assert {path.name for path in folder.iterdir()} == WRITTEN
+    for others in ({"checkpoint.part": b"mine"}, {"checkpoint.part": head, "notes": b"mine"}):
+        folder = runs.folder / f"of {len(others)} others"
+        folder.mkdir()
+        for name, content in others.items():
+            (folder / name).write_bytes(content)
+        ended = runs.whole(folder.name, "--checkpoint-every", "0")
+        assert ended.returncode == 2 and "is not an empty folder" in ended.stderr
+        assert state_of(folder) == others
+
+
+def test_a_run_that_was_cut_short_is_not_begun_afresh_without_the_option(runs, cut_short):
+    before = state_of(cut_short)
+    ended = runs.whole(cut_short.name)
+    assert (
+        ended.returncode == 2 and "give --checkpoint-every, with which it goes on" in ended.stderr
+    )
+    assert state_of(cut_short) == before
+
+
+@pytest.mark.parametrize("seconds", ["-1", "nan", "inf", "soon"])
+def test_an_interval_that_is_none_is_refused(runs, seconds):
+    ended = runs.whole("none", "--checkpoint-every", seconds)
+    assert ended.returncode == 2 and f"{seconds} is no number of seconds" in ended.stderr
+    assert not (runs.folder / "none").exists()
 
 
 def test_a_folder_without_a_checkpoint_is_left_alone(runs, tmp_path):

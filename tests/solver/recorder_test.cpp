@@ -182,24 +182,24 @@ TEST_F(Recorded, EqualRunsGiveEqualBytes) {
             Hdf5File(*folder / "motion.h5").numbers("/particles/soil/position/value"));
 }
 
-TEST_F(Recorded, AFolderThatIsNotThereIsAFileError) {
-  EXPECT_THROW(run(short_case(), bed, *folder / "none"), FileError);
+TEST_F(Recorded, AFolderThatIsNotEmptyIsAFileError) {
+  const std::string before = text_of(*folder / "resistance.csv");
+  EXPECT_THROW(run(short_case(), bed, folder->path()), FileError);
+  EXPECT_EQ(text_of(*folder / "resistance.csv"), before);
 }
 
 TEST_F(Recorded, AFullDiskIsAWriteErrorThatNamesTheFile) {
-  for (const char* file : {"resistance.csv", "ledger.csv"}) {
-    const TemporaryFolder full;
-    std::filesystem::create_symlink("/dev/full", full / file);
-    const auto message = message_of<WriteError>([&] { run(short_case(), bed, full.path()); });
-    ASSERT_TRUE(message.has_value()) << file;
-    EXPECT_EQ(*message, (full / file).string() + ": cannot be written any further; is the disk full?");
-    EXPECT_FALSE(std::filesystem::exists(full / "run.json"));
-  }
   const TemporaryFolder full;
-  std::filesystem::create_symlink("/dev/full", full / "motion.h5");
-  const auto message = message_of<WriteError>([&] { run(short_case(), bed, full.path()); });
-  ASSERT_TRUE(message.has_value());
-  EXPECT_EQ(*message, (full / "motion.h5").string() + ": HDF5 could not write it; is the disk full?");
+  const std::filesystem::path path = full / "file";
+  std::filesystem::create_symlink("/dev/full", path);
+  const auto said = [&](auto write) { return message_of<WriteError>(write).value_or("nothing"); };
+  const std::string expected = path.string() + ": cannot be written any further; is the disk full?";
+  EXPECT_EQ(said([&] { ResistanceFile file(path); }), expected);
+  EXPECT_EQ(said([&] { LedgerFile file(path); }), expected);
+  EXPECT_EQ(said([&] {
+              MotionFile(path, short_case(), small_disc({0.03, 0.03}, {0, 0}));
+            }),
+            path.string() + ": HDF5 could not write it; is the disk full?");
 }
 
 TEST(ResistanceFile, ARowHoldsTheForceOnTheBarAsASumAndInItsParts) {

@@ -38,7 +38,7 @@ class BatchedStepper final : public Stepper {
               .stride_squared = fastest_squared(w.particles) * (w.dt * w.dt),
               .marked_squared = marked_squared(w)};
     blocks_.cut(contacts());
-    set_checkpoint(w);
+    set_rollback_point(w);
     std::vector<std::jthread> others;
     for (std::size_t thread = 1; thread < crew_.size(); ++thread)
       others.emplace_back([this, &w, thread] { work(w, thread); });
@@ -50,14 +50,8 @@ class BatchedStepper final : public Stepper {
 
   [[nodiscard]] double spring_energy(const World& world) const override { return plain_.spring_energy(world); }
 
-  void save(OutArchive& archive) override {
-    plain_.save(archive);
-    archive(marked_now_);
-  }
-  void load(InArchive& archive) override {
-    plain_.load(archive);
-    archive(marked_now_);
-  }
+  void save(OutArchive& archive) override { plain_.save(archive); }
+  void load(InArchive& archive) override { plain_.load(archive); }
 
  private:
   using OwnContacts = typename Scheme::Plain::OwnContacts;
@@ -70,7 +64,7 @@ class BatchedStepper final : public Stepper {
   static constexpr double caution = 1.5;
 
   /// Blocks that have made a step of the wave; in a cache line that no other thread writes to.
-  struct alignas(64) Progress {
+  struct alignas(64) Done {
     std::atomic<std::size_t> blocks = 0;
   };
 
@@ -84,7 +78,7 @@ class BatchedStepper final : public Stepper {
   };
 
   /// What a wave that went too far goes back to. The particles and pairs of the world are as they were then.
-  struct Checkpoint {
+  struct RollbackPoint {
     long steps;
     Surfaces surfaces;
     OwnBar bar;
@@ -188,7 +182,7 @@ class BatchedStepper final : public Stepper {
       level.sums.assign((w.particles.count() + particles_in_sum - 1) / particles_in_sum, {});
       level.moved = {};
       level.moves = !Scheme::moves_first || w.steps + static_cast<long>(ahead_) + 1 < last_step_;
-      progress_[ahead_].blocks = 0;
+      done_[ahead_].blocks = 0;
     }
     return ahead_ == 0 ? Next::list : Next::wave;
   }
@@ -219,7 +213,7 @@ class BatchedStepper final : public Stepper {
     moved_.farthest_squared = 0.0;
     if (marked_now_) moved_.marked_squared = 0.0;
     careful_ = false;
-    set_checkpoint(w);
+    set_rollback_point(w);
   }
 
   void run_levels(const World& w, std::size_t thread) {
@@ -231,11 +225,11 @@ class BatchedStepper final : public Stepper {
         Level& level = levels_[number];
         if (number > 0) {
           const std::size_t needed = std::min(block + 2, blocks_.count());
-          const std::atomic<std::size_t>& done = progress_[number - 1].blocks;
+          const std::atomic<std::size_t>& done = done_[number - 1].blocks;
           wait_until([&] { return done.load(std::memory_order_acquire) >= needed; });
         }
         level.moved.include(blocks_.step(block, w, scheme_, level.surfaces, *level.bar, level.sums, level.moves));
-        progress_[number].blocks.store(block + 1, std::memory_order_release);
+        done_[number].blocks.store(block + 1, std::memory_order_release);
       }
     }
   }
@@ -262,13 +256,13 @@ class BatchedStepper final : public Stepper {
     marked_now_ = false;
   }
 
-  void set_checkpoint(const World& w) {
-    checkpoint_.emplace(Checkpoint{w.steps, w.surfaces, bar(), w.totals, w.momentum_ledger, w.energy_ledger, moved_,
-                                   marked_now_, contacts().on_surfaces()});
+  void set_rollback_point(const World& w) {
+    rollback_point_.emplace(RollbackPoint{w.steps, w.surfaces, bar(), w.totals, w.momentum_ledger, w.energy_ledger,
+                                          moved_, marked_now_, contacts().on_surfaces()});
   }
 
   void go_back(World& w) {
-    const Checkpoint& at = *checkpoint_;
+    const RollbackPoint& at = *rollback_point_;
     w.steps = at.steps;
     w.surfaces = at.surfaces;
     bar() = at.bar;
@@ -292,11 +286,11 @@ class BatchedStepper final : public Stepper {
   Blocks<Scheme> blocks_;
   Crew crew_;
   std::array<Level, most_ahead> levels_;
-  std::array<Progress, most_ahead> progress_;
+  std::array<Done, most_ahead> done_;
   std::size_t ahead_ = 0;  // steps of the next wave
   long last_step_ = 0;     // of this advance
   batch::Moved moved_;     // in the latest step, and since the list was made
-  std::optional<Checkpoint> checkpoint_;
+  std::optional<RollbackPoint> rollback_point_;
   Next next_ = Next::end;
   bool marked_now_ = false;    // the particles, where they are in the next step
   bool went_too_far_ = false;  // in the latest wave: further than the list allows

@@ -91,7 +91,7 @@ class Blocks {
     }
     pairs_.resize(batches);
     discs_.resize(lone_disc(blocks_.size()));
-    for (std::size_t number = 0; number < blocks_.size(); ++number) {
+    for (std::size_t number = 0; number < blocks_.size(); ++number) {  // with radii, which levers are divided by
       discs_[lone_disc(number)] = {.x = nowhere, .radius = 1.0, .radius_again = 1.0};
       discs_[lone_disc(number) + 1] = {.x = -nowhere, .radius = 1.0, .radius_again = 1.0};
     }
