@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .overrides import OverrideError, apply_override
 from .solver import call_solver, messages
-from .toml_text import TextError, read_toml
+from .toml_text import TextError, read_tables
 
 
 # Tables and keys that say how runs are judged: no engine reads them.
@@ -74,7 +74,7 @@ def load_case(
     Raises CaseError with every fault there is to tell, SolverError where there is no solver to ask.
     """
     try:
-        raw = read_toml(Path(path))
+        raw = read_tables(Path(path))
     except TextError as error:
         raise CaseError([str(error)]) from error
     if faults := _apply(raw, overrides):

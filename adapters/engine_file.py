@@ -12,7 +12,7 @@ from .case import Case
 from .contract import TABLES, UNITS, Column, Columns, unit_of
 from .engine import INPUTS, OUTPUT, EngineNotFound
 from .external import External
-from .toml_text import TextError, read_toml
+from .toml_text import TextError, read_tables
 
 RUN_INPUTS = ("case.json", "packing.csv", "packing.json")
 NAME = re.compile(r"[a-z][a-z0-9-]{0,31}")
@@ -86,7 +86,7 @@ class Described(External):
 def read_engine(path: Path) -> Described:
     """Raises EngineFileError with every fault there is to tell."""
     try:
-        table = read_toml(path)
+        table = read_tables(path)
     except TextError as error:
         raise EngineFileError(str(error)) from error
     if found := list(_faults(table)):

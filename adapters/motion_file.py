@@ -56,7 +56,9 @@ def write_motion(
     Raises OSError. It is made in memory, where it takes twice its size: on a full disk the library would have more to
     say than that.
     """
-    unused = f"{path.name}-{token_hex(8)}"  # a file of this name in the current folder would be read
+    unused = (
+        f"{path.name}-{token_hex(8)}"  # a file of this name in the current folder would be read
+    )
     with h5py.File(unused, "w", driver="core", backing_store=False) as file:
         write_header(file, engine, version)
         soil = file.create_group("particles/soil")

@@ -1,5 +1,6 @@
-"""Reading a TOML file that may be anything at all: a fault of its text names file, line and column."""
+"""Reading a TOML or JSON file that may be anything at all: a fault of its text names file, line and column."""
 
+import json
 import re
 import stat
 import tomllib
@@ -9,22 +10,28 @@ _LARGEST_BYTES = 2**20  # a case has some kilobytes; a larger file is a mistake 
 
 
 class TextError(Exception):
-    """The file holds no TOML; the message starts with the file's name."""
+    """The file holds no such text; the message starts with the file's name."""
 
 
-def read_toml(path: Path) -> dict:
-    """The file's tables. Raises TextError."""
+def read_tables(path: Path) -> dict:
+    """The tables of a TOML file, or, where its name ends in .json, of a JSON file. Raises TextError."""
     content = _read_bytes(path)
     try:
-        return tomllib.loads(content.decode())
+        found = (json if path.suffix == ".json" else tomllib).loads(content.decode())
     except UnicodeDecodeError as error:
         line, column = _position(content[: error.start])
         byte = content[error.start]
         raise TextError(f"{path}:{line}:{column}: byte 0x{byte:02x} is not UTF-8 text") from error
     except RecursionError as error:
         raise TextError(f"{path}: nested too deeply") from error
+    except json.JSONDecodeError as error:
+        where = f"{path}:{error.lineno}:{error.colno}"
+        raise TextError(f"{where}: not valid JSON: {error.msg}") from error
     except ValueError as error:  # TOMLDecodeError, or int() refusing a number
         raise TextError(_with_position(path, content, str(error))) from error
+    if not isinstance(found, dict):
+        raise TextError(f"{path}: holds no object of JSON")
+    return found
 
 
 def _read_bytes(path: Path) -> bytes:

@@ -91,6 +91,8 @@ def _refuse_foreign(root: Path) -> None:
 
 
 def _is_ours(root: Path) -> bool:
+    if not (root / _MARKER).is_file():
+        return False
     try:
         mark = json.loads((root / _MARKER).read_bytes())
     except (OSError, ValueError):

@@ -55,7 +55,11 @@ def check(**arguments):
     show_default=True,
     help="How large the ensemble of the bed is.",
 )
-@click.option("--bed", is_flag=True, help="Run the bed whatever the ladder says.")
+@click.option(
+    "--bed/--no-bed",
+    default=None,
+    help="Run the bed whatever the ladder says, or leave the verdict to the ladder. [default: run it if the ladder holds]",
+)
 @options.taking(options.out_at("results/ENGINE"), options.jobs)
 def conform(**arguments):
     """Say where a code of your own stands: the ladder, then the bed of CASE beside recorded runs of the other codes.
@@ -305,6 +309,15 @@ def dataset():
     required=True,
     type=click.Path(path_type=Path),
     help="The package, which is not there yet.",
+)
+@click.option(
+    "--author",
+    "authors",
+    metavar="NAME",
+    multiple=True,
+    default=["The crossdem authors"],
+    show_default=True,
+    help="Who is to be cited; may be repeated.",
 )
 @click.option(
     "--archive", is_flag=True, help="Also write DIR.tar.gz, the same bytes for the same package."

@@ -28,11 +28,11 @@ MICRO = RECORDS.parent / "micro"
 
 
 def conform(
-    engine: str, case: Case, tier: str, bed_all_the_same: bool, workspace: Workspace, jobs: int
+    engine: str, case: Case, tier: str, bed: bool | None, workspace: Workspace, jobs: int
 ) -> ExitCode:
     """Raises as `examine`."""
     console = Console()
-    found, page = examine(engine, case, tier, bed_all_the_same, workspace, jobs, console)
+    found, page = examine(engine, case, tier, bed, workspace, jobs, console)
     print_conformity(found, page)
     return found.exit_code
 
@@ -41,12 +41,12 @@ def examine(
     engine: str,
     case: Case,
     tier: str,
-    bed_all_the_same: bool,
+    bed: bool | None,
     workspace: Workspace,
     jobs: int,
     console: Console,
 ) -> tuple[Conformity, Path]:
-    """Where it stands, and the path of the page that says so.
+    """Where it stands, and the path of the page that says so. `bed`: whether to run it; None: if the ladder holds.
 
     Raises EngineNotFound for a code that does not say its version, CaseError for `case` without a record.
     """
@@ -55,10 +55,10 @@ def examine(
     plans = load_plans(MICRO, [engine], (), jobs)
     ladder = climb("micro", plans, [engine], Workspace(workspace.root / "ladder"), jobs, console)
     write_ladder(ladder, workspace.root / "ladder")
-    why = "" if bed_all_the_same else not_run(ladder)
-    bed = None if why else _bed(engine, case, record, tier, workspace, jobs, console)
+    why = {None: not_run(ladder), False: "The bed was not asked for.", True: ""}[bed]
+    beside = None if why else _bed(engine, case, record, tier, workspace, jobs, console)
     particles = {plan.case.name: plan.case.resolved["particles"]["count"] for plan in plans}
-    found = Conformity(engine, version, ladder, particles, bed, why, tier)
+    found = Conformity(engine, version, ladder, particles, beside, why, tier)
     return found, write_conformity(found, workspace.root)
 
 

@@ -10,10 +10,10 @@ from rich.text import Text
 
 from crossdem.adapters.files import write_whole
 
-from . import rungs, tables
+from . import rungs
 from .conformity import Conformity, hint
 from .pages import render
-from .record import libraries, plain
+from .record import check_record, libraries, plain
 from .summary import COLOURS
 from .wording import explanation, plural, printable
 
@@ -76,6 +76,15 @@ def _record(found: Conformity) -> dict:
         "ladder": {
             "verdict": found.ladder.word,
             "held": found.rungs_held,
+            "declared": [
+                {
+                    "case": rung.case,
+                    "rung": rung.name,
+                    "said": rung.sentence,
+                    "reason": rung.reason,
+                }
+                for rung in found.declared
+            ],
             "compared": len(found.ladder.compared),
             "not_offered": _declined(found),
             "differing": [
@@ -87,6 +96,7 @@ def _record(found: Conformity) -> dict:
             "tier": found.tier,
             "verdict": found.bed.verdict.word,
             "sentence": found.bed.verdict.sentence,
+            "checks": [check_record(result) for result in found.own_results],
         }
         if found.bed
         else None,
@@ -102,25 +112,22 @@ def _declined(found: Conformity) -> dict[str, str]:
 
 
 def _values(found: Conformity) -> dict:
-    bed_rows = []
-    if found.bed:
-        own = [result for result in found.bed.results if found.engine in result.pair]
-        bed_rows = [
-            (
-                result.check.quantity.title,
-                " against ".join(result.pair),
-                result.outcome,
-                explanation(result),
-            )
-            for result in own
-        ]
+    bed_rows = [
+        (
+            result.check.quantity.title,
+            " against ".join(result.pair),
+            result.outcome,
+            explanation(result),
+        )
+        for result in found.own_results
+    ]
     return {
         "found": found,
         "title": f"{found.engine}: where it stands",
         "differing": [(rung, hint(rung)) for rung in found.differing],
         "declined": _declined(found),
         "held": f"{found.rungs_held} of {plural(len(found.ladder.compared), 'rung')}",
-        "on": plural(len(found.ladder.cases), "case"),
+        "on": plural(len({rung.case for rung in found.ladder.compared}), "case"),
         "bed_rows": bed_rows,
         "libraries": libraries(),
     }

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from crossdem import ExitCode
 
-from . import rungs
+from . import checks, rungs
+from .checks import CheckResult
 from .comparison import Comparison
 from .ladder import Ladder
 from .rungs import AnswerRung, Rung, TwinRung
+from .runs import TIERS
 from .verdict import AGREES, CONSISTENT, DIFFERS, ENGINE_FAILED, EXIT_CODES, INCONCLUSIVE
 from .wording import plural
 
@@ -73,7 +76,25 @@ class Conformity:
 
     @property
     def rungs_held(self) -> int:
-        return sum(rung.outcome == rungs.AGREES for rung in self.ladder.compared)
+        """Without those that hold by a declared difference."""
+        agreeing = sum(rung.outcome == rungs.AGREES for rung in self.ladder.compared)
+        return agreeing - len(self.declared)
+
+    @property
+    def declared(self) -> list[AnswerRung]:
+        """The rungs on which the code differs by what its description declares."""
+        answers = [rung for rung in self.ladder.rungs if isinstance(rung, AnswerRung)]
+        return [rung for rung in answers if rung.declared]
+
+    @property
+    def own_results(self) -> list[CheckResult]:
+        """Of the bed's checks, those with the code in them."""
+        checked = self.bed.results if self.bed else ()
+        return [result for result in checked if self.engine in result.pair]
+
+    @property
+    def bed_is_comparable(self) -> bool:
+        return any(result.outcome != checks.NOT_COMPARABLE for result in self.own_results)
 
     @property
     def differing(self) -> list[Rung]:
@@ -91,7 +112,7 @@ class Conformity:
             first = self.differing[0]
             return f"{first.case}, {first.name}: {first.sentence}. {hint(first)}".rstrip()
         if self.bed:
-            return f"{self.bed.verdict.sentence} {self.bed.verdict.next_step}"
+            return f"{self.bed.verdict.sentence} {self._after_bed()}"
         return self.why_no_bed
 
     @property
@@ -99,6 +120,8 @@ class Conformity:
         """Of the badge."""
         lacking = len(self.ladder.rungs) - len(self.ladder.compared)
         climbed = f"ladder {self.rungs_held}/{len(self.ladder.compared)}"
+        if self.declared:
+            climbed += f" + {len(self.declared)} declared"
         bed = f", bed {self.bed.verdict.word.lower()}" if self.bed else ""
         return climbed + (f" ({lacking} not offered)" if lacking else "") + bed
 
@@ -106,6 +129,16 @@ class Conformity:
     def colour(self) -> str:
         """Of the badge, as shields.io names it."""
         return COLOURS[self.word]
+
+    def _after_bed(self) -> str:
+        larger = dict(pairwise(TIERS)).get(self.tier)
+        if not self.bed_is_comparable:
+            return (
+                "Where the code does not offer the bed, --no-bed leaves the verdict to the ladder."
+            )
+        if self.bed.verdict.word == CONSISTENT and larger:
+            return f"For a statement of equivalence take a larger ensemble: --tier {larger}."
+        return self.bed.verdict.next_step
 
 
 def hint(rung: Rung) -> str:

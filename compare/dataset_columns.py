@@ -142,4 +142,6 @@ def _columns(definitions: dict[str, str]) -> list[Column]:
 def _unit(name: str) -> str:
     if name in TEXTS:
         return ""
+    if name.endswith("_Ns"):
+        return "N s"
     return (unit_of(name) or "1").replace("_", "/")

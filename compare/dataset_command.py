@@ -18,7 +18,7 @@ from crossdem.adapters.workspace import Workspace, WorkspaceError
 from .comparison import compare_runs
 from .dataset_archive import archive_of, write_archive
 from .dataset_documents import command_of
-from .dataset_package import refuse_taken, write_package
+from .dataset_package import Origin, refuse_taken, write_package
 from .dataset_sums import SUMS, sha256_of
 from .dataset_verify import faults_of_package
 from .horizon_runs import horizon_of_runs
@@ -43,6 +43,7 @@ def build(
     twins: int,
     output: Path,
     archive: bool,
+    authors: Sequence[str],
     workspace: Workspace,
     jobs: int | None,
     profile: str | None,
@@ -62,9 +63,11 @@ def build(
     given = ["--seeds", seeds, "--native-seeds", native_seeds, "--twins", twins]
     given += [word for change in overrides for word in ("--set", change)]
     given += ["--mpi-ranks", ranks] if ranks > 1 else []
+    given += [word for name in authors for word in ("--author", name)]
     words = ["dataset", "build", case_file.name, *_named(engines), *given, "--output", output.name]
     command = command_of(words)
-    identity = write_package(case, overrides, list(folders), comparison, command, output)
+    origin = Origin(command, tuple(overrides), tuple(authors))
+    identity = write_package(case, list(folders), comparison, origin, output)
     click.echo(f"{output}: {len(folders)} runs, verdict {comparison.verdict.word}")
     click.echo(f"identity (SHA-256 of {SUMS}): {identity}")
     if archive:

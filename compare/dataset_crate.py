@@ -12,7 +12,6 @@ METADATA = "ro-crate-metadata.json"
 SPECIFICATION = "https://w3id.org/ro/crate/1.1"
 PROFILE = "https://w3id.org/ro/wfrun/process/0.5"
 LICENSE = "https://spdx.org/licenses/CC-BY-4.0"
-AUTHORS = "#authors"
 
 
 def crate(
@@ -21,6 +20,10 @@ def crate(
     """Of a package: `about` as in dataset_documents, `files` with their sizes [bytes] (None: not known yet), the manifest
     of each run by its folder."""
     engines = {_engine_id(manifest): manifest for manifest in runs.values()}
+    authors = [
+        {"@id": f"#author{number}", "@type": "Organization", "name": name}
+        for number, name in enumerate(about["authors"], start=1)
+    ]
     graph = [
         {
             "@id": METADATA,
@@ -36,7 +39,7 @@ def crate(
             "datePublished": about["date"],
             "version": about["version"],
             "license": {"@id": LICENSE},
-            "author": {"@id": AUTHORS},
+            "author": [{"@id": author["@id"]} for author in authors],
             "conformsTo": {"@id": PROFILE},
             "hasPart": [_file(name) for name in files if name != METADATA],
             "mentions": [{"@id": _action_id(folder)} for folder in runs],
@@ -48,7 +51,7 @@ def crate(
             "@type": "CreativeWork",
             "name": "Creative Commons Attribution 4.0 International",
         },
-        {"@id": AUTHORS, "@type": "Organization", "name": about["authors"]},
+        *authors,
     ]
     graph += [_file_entity(name, size) for name, size in files.items() if name != METADATA]
     graph += [_engine(identifier, manifest) for identifier, manifest in engines.items()]

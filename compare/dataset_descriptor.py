@@ -32,7 +32,7 @@ def data_package(
                 "path": "https://creativecommons.org/licenses/by/4.0/",
             }
         ],
-        "contributors": [{"title": about["authors"], "role": "author"}],
+        "contributors": [{"title": name, "role": "author"} for name in about["authors"]],
         "resources": [_resource(name, *facts, columns) for name, facts in files.items()],
     }
 

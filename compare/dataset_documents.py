@@ -54,7 +54,7 @@ def citation(about: Mapping[str, str]) -> str:
         "version": about["version"],
         "date-released": about["date"],
         "license": "CC-BY-4.0",
-        "authors": [{"name": about["authors"]}],
+        "authors": [{"name": name} for name in about["authors"]],
         "keywords": ["discrete element method", "granular material", "reference data"],
     }
     lines = (f"{key}: {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items())

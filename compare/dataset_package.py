@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -26,7 +28,14 @@ from .provenance import provenance
 from .record import record_text
 from .recorded import CONTENT
 
-AUTHORS = "The crossdem authors"
+
+@dataclass(frozen=True)
+class Origin:
+    """What a package says of how it came about, beside its runs."""
+
+    command: str  # makes it again
+    overrides: tuple[str, ...] = ()  # key.path=value, of what the file of its case says
+    authors: tuple[str, ...] = ()
 
 
 def refuse_taken(folder: Path) -> None:
@@ -41,16 +50,12 @@ def refuse_taken(folder: Path) -> None:
 
 def write_package(
     case: Case,
-    overrides: Sequence[str],
     runs: Sequence[Path],
     comparison: Comparison,
-    command: str,
+    origin: Origin,
     folder: Path,
 ) -> str:
-    """Into the new `folder`, whole or not at all; returns its identity.
-
-    `overrides`: what was changed in the file of `case` (key.path=value); `command`: what makes the package again.
-    """
+    """Into the new `folder`, whole or not at all; returns its identity."""
     refuse_taken(folder)
     folder = folder.absolute()
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -58,7 +63,7 @@ def write_package(
     shutil.rmtree(partial, ignore_errors=True)
     try:
         partial.mkdir()
-        identity = _fill(partial, case, overrides, runs, comparison, command)
+        identity = _fill(partial, case, runs, comparison, origin)
         partial.rename(folder)
     finally:
         shutil.rmtree(partial, ignore_errors=True)
@@ -66,12 +71,7 @@ def write_package(
 
 
 def _fill(
-    folder: Path,
-    case: Case,
-    overrides: Sequence[str],
-    runs: Sequence[Path],
-    comparison: Comparison,
-    command: str,
+    folder: Path, case: Case, runs: Sequence[Path], comparison: Comparison, origin: Origin
 ) -> str:
     ensemble, packings = read_runs(runs)
     for run in runs:
@@ -82,7 +82,7 @@ def _fill(
         for name in ("packing.csv", "packing.json"):
             shutil.copyfile(packing.folder / name, place / name)
     manifests = _by_folder(ensemble, runs)
-    about = _about(case, overrides, comparison, list(manifests.values()), command)
+    about = _about(case, comparison, list(manifests.values()), origin)
     columns = tables(list(ensemble.profiles.columns))
     others = {
         "runs/*/motion.h5": motion_columns(runs[0] / "motion.h5"),
@@ -138,25 +138,21 @@ def _size(path: Path) -> int:
 
 
 def _about(
-    case: Case,
-    overrides: Sequence[str],
-    comparison: Comparison,
-    manifests: Sequence[dict],
-    command: str,
-) -> dict[str, str]:
+    case: Case, comparison: Comparison, manifests: Sequence[dict], origin: Origin
+) -> dict[str, Any]:
     """What the texts say of a package; its date is that of its last run."""
     engines = ", ".join(dict.fromkeys(about["engine"] for about in manifests))
     seeds = len({about["seed"] for about in manifests})
-    changed = f", changed: {', '.join(overrides)}" if overrides else ""
+    changed = f", changed: {', '.join(origin.overrides)}" if origin.overrides else ""
     return {
         "name": f"crossdem-{case.name}",
         "title": f"{case.resolved['title']}{changed}: reference runs of {engines}",
         "description": f"{len(manifests)} runs of the case {case.name}{changed}, by {engines}, on {seeds} packings of the same "
         "particles: motion of every particle, forces on the bar, and the comparison of the codes.",
-        "authors": AUTHORS,
+        "authors": origin.authors,
         "version": __version__,
         "date": max(map(ended, manifests)).date().isoformat(),
         "engines": engines,
         "verdict": comparison.verdict.word,
-        "command": command,
+        "command": origin.command,
     }

@@ -32,7 +32,7 @@ def crossdem_check(tmp_path):
         name = attach(_description(engine))
         workspace = Workspace(tmp_path / "crossdem")
         quiet = Console(quiet=True)
-        found, page = examine(name, load_case(Path(case)), tier, False, workspace, cores(), quiet)
+        found, page = examine(name, load_case(Path(case)), tier, None, workspace, cores(), quiet)
         if found.exit_code:
             told = [f"{found.word}: {name}, {found.version}: {found.message}"]
             told += [f"{rung.case}, {rung.name}: {rung.sentence}" for rung in found.differing]

@@ -50,7 +50,7 @@ def record(comparison: Comparison) -> dict:
             "verdict": vars(verdict) | {"exit_code": int(verdict.exit_code)},
             "engines": comparison.engines,
             "seeds": comparison.seeds,
-            "checks": [_check(result) for result in comparison.results],
+            "checks": [check_record(result) for result in comparison.results],
             "scatter": {
                 name: {
                     engine: scatter and vars(scatter) | {"share_of_beds": scatter.share_of_beds}
@@ -97,7 +97,7 @@ def libraries() -> dict[str, str]:
     return {name: metadata.version(name) for name in LIBRARIES}
 
 
-def _check(result) -> dict:
+def check_record(result) -> dict:
     check = result.check
     return {
         "quantity": check.quantity.name,

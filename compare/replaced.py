@@ -12,6 +12,8 @@ from .wording import listed, packings
 
 def replaced_by(comparison: Comparison, folder: Path) -> str | None:
     """A sentence where the report in `folder` rests on runs that the `comparison` lacks."""
+    if not (folder / "report.json").is_file():
+        return None
     try:
         before = json.loads((folder / "report.json").read_bytes())
         runs = {(run["engine"], run["seed"], run["twin"]) for run in before["runs"]}

@@ -84,6 +84,11 @@ class AnswerRung(Rung):
         return tuple(value - self.exact for value in self.values)
 
     @property
+    def declared(self) -> bool:
+        """Whether it agrees because a difference of this size was declared, with a reason, and not with the closed form."""
+        return self.outcome == AGREES and self.expected is not None
+
+    @property
     def error(self) -> float:
         """Of the limit, in the quantity's unit."""
         return self.limit - self.exact

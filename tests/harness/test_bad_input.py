@@ -1,5 +1,6 @@
 """Bad input: each kind ends with exit code 2, a message that names the place, and nothing written."""
 
+import os
 import re
 
 import pytest
@@ -137,6 +138,27 @@ def test_a_check_of_no_known_quantity(refused, write):
 def test_text_that_is_not_toml_is_told_with_line_and_column(refused, write):
     said = refused(write("schema_version = 1", "schema_version = "))
     assert re.search(r"case\.toml:\d+:18: not valid TOML: Invalid value", said)
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ('{"name": }', ":1:10: not valid JSON: Expecting value"),
+        ("[1]", ": holds no object of JSON"),
+        ("[" * 100_000, ": nested too deeply"),
+    ],
+)
+def test_a_case_of_json_that_is_none_is_told_with_line_and_column(text, said, refused, tmp_path):
+    (tmp_path / "case.json").write_text(text)
+    assert f"case.json{said}" in refused(tmp_path / "case.json")
+
+
+def test_a_pipe_in_the_place_of_a_file_of_the_output_folder_is_not_waited_for(tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    os.mkfifo(out / "crossdem.json")
+    ended = crossdem("check", REFERENCE, "--out", out, timeout=60)
+    assert ended.returncode == 2 and "was not made by crossdem" in ended.stderr
 
 
 def test_text_that_ends_too_early_is_told_with_line_and_column(refused, tmp_path):

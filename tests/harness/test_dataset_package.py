@@ -154,6 +154,21 @@ def test_titles_and_descriptions_say_what_was_changed_in_the_case(case_file, tmp
     assert f"changed: {change}" in crate
 
 
+def test_who_is_to_be_cited_is_named_everywhere(case_file, tmp_path):
+    package = tmp_path / "package"
+    authors = ["A. Author", 'B. "Both" Author']
+    named = [word for name in authors for word in ("--author", name)]
+    assert build(case_file, package, tmp_path / "work", *NATIVE, *named) == 0
+    citation = yaml.safe_load((package / "CITATION.cff").read_text(encoding="utf-8"))
+    assert [entry["name"] for entry in citation["authors"]] == authors
+    assert [entry["title"] for entry in descriptor(package)["contributors"]] == authors
+    graph = json.loads((package / "ro-crate-metadata.json").read_bytes())["@graph"]
+    entities = {entity["@id"]: entity for entity in graph}
+    assert [entities[author["@id"]]["name"] for author in entities["./"]["author"]] == authors
+    command = json.loads((package / "provenance.json").read_bytes())["command"]
+    assert command.split("crossdem ")[1] and "--author 'A. Author'" in command
+
+
 def test_a_failed_engine_leaves_no_package(case_file, tmp_path, fake, capsys):
     fake.fault("crash")
     options = ("--engines", "native,liggghts", "--seeds", "1")
@@ -191,6 +206,13 @@ def test_schemas_name_the_columns_that_tables_have(package):
         with open(package / entry["path"], newline="", encoding="utf-8") as file:
             header = next(csv.reader(file))
         assert header == [field["name"] for field in entry["schema"]["fields"]], entry["path"]
+
+
+def test_columns_have_the_unit_that_their_name_ends_in(package):
+    with open(package / "columns.csv", newline="", encoding="utf-8") as file:
+        units = {row["name"]: row["unit"] for row in csv.DictReader(file)}
+    assert units["floor_y_Ns"] == units["residual_x_Ns"] == "N s"
+    assert units["bar_work_J"] == "J" and units["contacts"] == "1"
 
 
 def test_every_dataset_of_a_motion_file_is_defined_with_its_unit(package):
@@ -293,6 +315,8 @@ def test_runs_made_here_are_compared_with_those_of_engines_that_are_gone(
     assert build(case_file, built, tmp_path / "work", *both) == ExitCode.AGREES
     monkeypatch.setenv("PATH", "/usr/bin:/bin")
     code = against(case_file, built, tmp_path / "out", "--engines", "native")
+    assert "crossdem check case.json --against ." in (built / "README.md").read_text()
+    assert against(built / "case.json", built, tmp_path / "same", "--engines", "native") == code
     here = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
     there = json.loads((built / "comparison" / "report.json").read_text(encoding="utf-8"))
     assert code == here["verdict"]["exit_code"]

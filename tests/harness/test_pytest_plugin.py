@@ -1,5 +1,6 @@
 """The fixture crossdem_check: a test of one line for a code of one's own, in a process of pytest as users have it."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -22,7 +23,8 @@ def run_tests(folder, text, fault="none"):
     (folder / "door.toml").write_text(DESCRIPTION)
     (folder / "door.py").write_text(CLASS)
     shutil.copy(HERE / "door_engine.py", folder)
-    command = ["/usr/bin/python3", "-m", "pytest", "-q", "-p", "no:cacheprovider", folder]
+    options = ["-q", "-p", "no:cacheprovider", f"--basetemp={folder / 'tmp'}"]
+    command = ["/usr/bin/python3", "-m", "pytest", *options, folder]
     environment = os.environ | {"PYTHONPATH": str(ROOT), "CROSSDEM_SOLVER": str(find_solver())}
     environment |= {"FAULT": fault, "CONFORMS": "1"}
     return subprocess.run(
@@ -33,6 +35,13 @@ def run_tests(folder, text, fault="none"):
 def test_a_code_that_agrees_passes_in_one_line(tmp_path):
     said = run_tests(tmp_path, "def test_mine(crossdem_check):\n    crossdem_check('door.toml')\n")
     assert said.returncode == 0 and "1 passed" in said.stdout, said.stdout
+    [about] = {file.resolve() for file in (tmp_path / "tmp").glob("*/crossdem/conform.json")}
+    checks = json.loads(about.read_bytes())["bed"]["checks"]
+    assert {frozenset(check["pair"]) for check in checks} == {
+        frozenset({"door", name}) for name in ("native", "liggghts", "yade")
+    }
+    summary = about.with_suffix(".md").read_text(encoding="utf-8")
+    assert all(check["explanation"] in summary for check in checks)
 
 
 def test_a_class_may_be_given_as_itself_and_what_differs_is_told(tmp_path):
