@@ -74,7 +74,7 @@ def _readme(case: Case, packing: Packing, engine: Code, folder: Path, ranks: int
     return f"""\
 {case.name}, seed {packing.seed}, by {engine.name}
 
-To run it again by hand, in this folder:
+To run it again by hand, in a copy of this folder:
 
     {rerun_command(case, engine, folder, ranks)}
 

@@ -24,6 +24,7 @@ from .dataset_verify import faults_of_package
 from .horizon_runs import horizon_of_runs
 from .record_command import refuse_failures
 from .runs import here, run_engines
+from .wording import plural
 
 
 def refuse_places(output: Path, archive: bool) -> None:
@@ -68,7 +69,7 @@ def build(
     command = command_of(words)
     origin = Origin(command, tuple(overrides), tuple(authors))
     identity = write_package(case, list(folders), comparison, origin, output)
-    click.echo(f"{output}: {len(folders)} runs, verdict {comparison.verdict.word}")
+    click.echo(f"{output}: {plural(len(folders), 'run')}, verdict {comparison.verdict.word}")
     click.echo(f"identity (SHA-256 of {SUMS}): {identity}")
     if archive:
         click.echo(write_archive(output))
@@ -88,5 +89,5 @@ def verify(folder: Path, identity: str | None) -> ExitCode:
         click.echo(fault)
     if (folder / SUMS).is_file():
         click.echo(f"identity (SHA-256 of {SUMS}): {sha256_of(folder / SUMS)}")
-    click.echo(f"{folder}: {f'{len(faults)} faults' if faults else 'as it was built'}")
+    click.echo(f"{folder}: {plural(len(faults), 'fault') if faults else 'as it was built'}")
     return ExitCode.DIFFERS if faults else ExitCode.AGREES

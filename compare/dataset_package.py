@@ -27,6 +27,7 @@ from .finished_runs import read_runs
 from .provenance import provenance
 from .record import record_text
 from .recorded import CONTENT
+from .wording import packings, plural
 
 
 @dataclass(frozen=True)
@@ -147,8 +148,8 @@ def _about(
     return {
         "name": f"crossdem-{case.name}",
         "title": f"{case.resolved['title']}{changed}: reference runs of {engines}",
-        "description": f"{len(manifests)} runs of the case {case.name}{changed}, by {engines}, on {seeds} packings of the same "
-        "particles: motion of every particle, forces on the bar, and the comparison of the codes.",
+        "description": f"{plural(len(manifests), 'run')} of the case {case.name}{changed}, by {engines}, on {packings(seeds)} "
+        "of the same particles: motion of every particle, forces on the bar, and the comparison of the codes.",
         "authors": origin.authors,
         "version": __version__,
         "date": max(map(ended, manifests)).date().isoformat(),

@@ -16,6 +16,8 @@ def faults_of_package(folder: Path, identity: str | None = None) -> list[str]:
 
     Raises RecordError where there is no package.
     """
+    if folder.is_file():
+        raise RecordError([f"{folder}: is no folder; unpack it and verify what comes out"])
     if not any((folder / name).is_file() for name in (SUMS, DESCRIPTOR)):
         raise RecordError(
             [f"{folder}: there is no package; `crossdem dataset build CASE -o {folder}` makes one"]

@@ -71,7 +71,7 @@ def near_bar_history(dataset: Dataset) -> pd.DataFrame:
 
 
 def near_bar_movement_m(dataset: Dataset) -> float:
-    """Mean downward displacement [m] at the end of the particles near the bar; > 0 is down, with the bar."""
+    """Mean downward displacement [m] at the end of the particles near the bar (the case's marks.near_bar_m); > 0 is down, with the bar."""
     return float(near_bar_history(dataset)["downward_m"].iloc[-1])
 
 

@@ -36,7 +36,7 @@ def resistance_profile(resistance: pd.DataFrame, bin_depth_m: float = 0.01) -> p
 
 
 def mean_resistance_N(resistance: pd.DataFrame) -> float:
-    """Mean of the resistance [N] over the deep window."""
+    """Mean of the resistance [N] over the last two thirds of the depth."""
     return float(deep_window(resistance)["force_y_N"].mean())
 
 
@@ -56,26 +56,26 @@ def resistance_slope_N_m(resistance: pd.DataFrame) -> float:
 
 
 def fluctuation_N(resistance: pd.DataFrame) -> float:
-    """Standard deviation [N] of the resistance about its trend, line and deviation both over the deep window."""
+    """Standard deviation [N] of the resistance about its trend, line and deviation both over the last two thirds of the depth."""
     window = deep_window(resistance)
     deviation_N = window["force_y_N"] - trend(window)(window["depth_m"])
     return float(deviation_N.std(ddof=2))
 
 
 def tip_share(resistance: pd.DataFrame) -> float:
-    """Share of the mean resistance that the tip (bottom face and its corners) carries, over the deep window."""
+    """Share of the mean resistance that the tip (bottom face and its corners) carries, over the last two thirds of the depth."""
     window = deep_window(resistance)
     return float(window["tip_force_y_N"].mean() / window["force_y_N"].mean())
 
 
 def shaft_share(resistance: pd.DataFrame) -> float:
-    """Share of the mean resistance that the shaft (the bar's sides) carries, over the deep window."""
+    """Share of the mean resistance that the shaft (the bar's sides) carries, over the last two thirds of the depth."""
     window = deep_window(resistance)
     return float(window["shaft_force_y_N"].mean() / window["force_y_N"].mean())
 
 
 def kinetic_energy_J(resistance: pd.DataFrame) -> float:
-    """Kinetic energy of all particles, rotation included [J], mean over the deep window."""
+    """Kinetic energy of all particles, rotation included [J], mean over the last two thirds of the depth."""
     return float(deep_window(resistance)["kinetic_energy_J"].mean())
 
 

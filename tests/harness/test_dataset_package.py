@@ -119,8 +119,11 @@ def test_sums_written_anew_do_not_hide_a_change(copy, package, capsys):
     assert any(identity in line for line in verify(copy, capsys, "--identity", identity)[1])
 
 
-def test_a_folder_without_a_package_ends_with_2(tmp_path):
+def test_a_folder_without_a_package_ends_with_2(tmp_path, package, capsys):
     assert main(["dataset", "verify", str(tmp_path)]) == ExitCode.BAD_INPUT
+    archive = package.with_name("package.tar.gz")
+    assert main(["dataset", "verify", str(archive)]) == ExitCode.BAD_INPUT
+    assert "unpack it" in capsys.readouterr().err
 
 
 def test_the_same_runs_make_the_same_package_and_archive(package, case_file):

@@ -3,11 +3,13 @@
 import errno
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
 import sys
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -18,6 +20,7 @@ from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.machine import machine_facts
 from crossdem.adapters.one_run import Limits
 from crossdem.adapters.packing import make_packing
+from crossdem.adapters.process import Process, wait_for_any
 from crossdem.adapters.run import RunRequest, run_all
 
 
@@ -215,3 +218,18 @@ def assert_ended(process_ids):
     for process_id in process_ids:
         with pytest.raises(ProcessLookupError):
             os.kill(process_id, 0)
+
+
+def test_the_end_of_a_process_is_noticed_beside_a_thousand_open_files(tmp_path):
+    least = 1200
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, least), hard))
+    with ExitStack() as files:
+        files.callback(resource.setrlimit, resource.RLIMIT_NOFILE, (soft, hard))
+        for _ in range(least - 100):
+            files.enter_context(open(os.devnull, "rb"))
+        process = Process(["sleep", "0.2"], tmp_path, {}, tmp_path / "log")
+        begun = time.monotonic()
+        wait_for_any([process], 60.0)
+        assert time.monotonic() - begun < 30.0
+        assert process.poll().status == 0
