@@ -9,10 +9,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.names import unknown_name
 
 from . import exact, measures
 from .engine_laws import EngineLaw
-from .quantities import numbered_tables, unknown_name
+from .quantities import numbered_tables
 from .start import Start
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.names import unknown_name
 
 from . import motion, resistance
 
@@ -92,10 +92,3 @@ def unknown_quantities(case: dict) -> list[str]:
             continue
         lines.append(f"check[{number}].quantity: {unknown_name('quantity', name, QUANTITIES)}")
     return lines
-
-
-def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
-    """That `name` is none of the `known`, with the one that may have been meant."""
-    near = difflib.get_close_matches(name, known, n=1)
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    return f"unknown {what} {name!r}; {hint}known: {', '.join(known)}"
