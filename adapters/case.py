@@ -125,6 +125,11 @@ def _resolve(raw: dict, file_name: str) -> Case:
         text = json.dumps(_to_json(raw), ensure_ascii=False).encode()
     except RecursionError as error:
         raise CaseError([f"{file_name}: nested too deeply"]) from error
+    except UnicodeEncodeError as error:  # JSON's escapes can say half a character
+        half = f"\\u{ord(error.object[error.start]):04x}"
+        raise CaseError(
+            [f"{file_name}: {half} is half a character; give its other half, too"]
+        ) from error
     done = call_solver(["resolve", "-", f"--file-name={file_name}"], stdin=text)
     said = messages(done.stderr)
     if done.returncode:

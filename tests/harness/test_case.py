@@ -112,3 +112,12 @@ def test_every_malformed_override_is_reported_at_once():
     with pytest.raises(CaseError) as raised:
         load_case(REFERENCE, ["bar", "=1"])
     assert [fault.split(":")[0] for fault in raised.value.faults] == ["--set bar", "--set =1"]
+
+
+def test_half_a_character_of_json_is_refused(tmp_path):
+    path = tmp_path / "case.json"
+    path.write_text('{"name": "\\ud83d"}')
+    with pytest.raises(CaseError) as raised:
+        load_case(path)
+    said = "\\ud83d is half a character; give its other half, too"
+    assert raised.value.faults == [f"{path}: {said}"]
