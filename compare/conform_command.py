@@ -9,6 +9,7 @@ from rich.console import Console
 from crossdem import ExitCode
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
+from crossdem.adapters.engine_file import LADDER
 from crossdem.adapters.engines import get_engine
 from crossdem.adapters.workspace import Workspace
 
@@ -23,8 +24,6 @@ from .recorded import RECORDS, find_record
 from .replay import replayed, restore_packings, said_of
 from .report import write_report
 from .runs import TIERS, run_engines
-
-MICRO = RECORDS.parent / "micro"
 
 
 def conform(
@@ -52,7 +51,7 @@ def examine(
     """
     version = get_engine(engine).version()
     record = find_record(case, RECORDS)
-    plans = load_plans(MICRO, [engine], (), jobs)
+    plans = load_plans(LADDER, [engine], (), jobs)
     ladder = climb("micro", plans, [engine], Workspace(workspace.root / "ladder"), jobs, console)
     write_ladder(ladder, workspace.root / "ladder")
     why = {None: not_run(ladder), False: "The bed was not asked for.", True: ""}[bed]

@@ -209,7 +209,9 @@ WHOLE = {
     "cost_s": 1e-6,
     "scheme": {"slip_cap": "total"},
     "twin_limit_m": 1e-6,
-    "difference": [{"case": "a", "quantity": "b", "reason": "c", "value": 1.0, "tolerance": 1.0}],
+    "difference": [
+        {"case": "pinch", "quantity": "b", "reason": "c", "value": 1.0, "tolerance": 0.1}
+    ],
     "motion": {
         "files": "f*.csv",
         "separator": " ",
@@ -219,15 +221,25 @@ WHOLE = {
 }
 
 
-@given(data=some.data())
-def test_a_description_of_an_engine_with_other_values(data, case, tmp_path_factory):
-    path = tmp_path_factory.getbasetemp() / "door.toml"
-    values = data.draw(damaged_json(WHOLE).filter(lambda value: isinstance(value, dict)))
+def write_description(path, values):
+    (path.parent / "door").touch()
     path.write_text(
         "".join(f"{json.dumps(key)} = {as_toml(value)}\n" for key, value in values.items()),
         encoding="utf-8",
         errors="replace",
     )
+
+
+def test_the_whole_description_is_read(tmp_path):
+    write_description(tmp_path / "door.toml", WHOLE)
+    survives(lambda: read_engine(tmp_path / "door.toml"))
+
+
+@given(data=some.data())
+def test_a_description_of_an_engine_with_other_values(data, case, tmp_path_factory):
+    path = tmp_path_factory.getbasetemp() / "door.toml"
+    values = data.draw(damaged_json(WHOLE).filter(lambda value: isinstance(value, dict)))
+    write_description(path, values)
 
     def read_and_use():
         engine = read_engine(path)

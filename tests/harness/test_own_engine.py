@@ -1,6 +1,7 @@
 """The door for users' codes: docs/own_engine.md. Behind it stands the native solver, so that every bit must come through."""
 
 import json
+import os
 import shutil
 from pathlib import Path
 
@@ -10,9 +11,10 @@ from command_line import crossdem
 from small_case import small_case, small_file
 
 from crossdem.adapters import engines
+from crossdem.adapters.case import load_case
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.engine import EngineNotFound
-from crossdem.adapters.engine_file import EngineFileError, read_engine
+from crossdem.adapters.engine_file import LADDER, EngineFileError, read_engine
 from crossdem.adapters.run import run_all
 from crossdem.adapters.run_folder import RunRequest, run_key
 from crossdem.adapters.solver import find_solver
@@ -190,10 +192,19 @@ def test_a_run_is_made_anew_when_code_or_description_change(describe, case, pack
         ('[motion]\nfiles = "/etc/*"', "motion.files: the pattern of a file in {out}"),
         ('[motion]\nseparator = "xx"', "motion.separator: one of"),
         ('[motion.columns]\nz_m = "z"', "motion.columns.z_m: no such column; there are time_s"),
-        ('[motion.columns]\nx_m = { unit = "inch" }', "its units: m, cm, mm, um"),
-        ('[motion.columns]\nid = { unit = "m" }', "its units: none"),
+        (
+            '[motion.columns]\nx_m = { unit = "furlong" }',
+            'motion.columns.x_m: no such unit "furlong"; its units: m, cm, mm, um',
+        ),
+        ('[motion.columns]\nid = { unit = "m" }', 'no such unit "m"; its units: none'),
+        ("[motion.columns]\nx_m = { unit = 3 }", "motion.columns.x_m: the name of a column"),
         ("[motion.columns]\nx_m = 3", "motion.columns.x_m: the name of a column"),
-        ('[[difference]]\ncase = "pinch"', "difference: tables with the keys case, quantity"),
+        ("difference = 3", "difference: tables with the keys case, quantity"),
+        ('[[difference]]\ncase = "pinch"', "difference[0].quantity: is missing: the answer"),
+        ('[scheme]\nslip_cap = "totl"', "scheme.slip_cap: must be one of spring, total"),
+        ('[scheme]\nslip_kap = "total"', "scheme.slip_kap: unknown key; known here: attraction"),
+        ('[scheme]\nname = "yade"\nslip_cap = "total"', "scheme.name: the scheme"),
+        ("[scheme]\nslip_cap = 3", "scheme: readings of the native scheme"),
     ],
 )
 def test_a_fault_of_a_description_names_file_and_key(more, fault, describe):
@@ -202,19 +213,80 @@ def test_a_fault_of_a_description_names_file_and_key(more, fault, describe):
     assert str(told.value).startswith(f"{describe(more)}: ") and fault in str(told.value)
 
 
-@pytest.mark.parametrize("files", ['"case.json"', '"a.in", "sub/a.in"', '"../a.in"', '"/a.in"'])
-def test_files_of_a_code_cannot_take_the_place_of_others(files, describe):
+@pytest.mark.parametrize(
+    "changed, fault",
+    [
+        ({}, None),
+        ({"value": -0.02}, None),
+        ({"case": "spin_strt"}, "case: unknown case 'spin_strt'; did you mean 'spin_start'?"),
+        ({"case": 3}, "case: the name of a case"),
+        ({"value": 0}, "value: by how much it is above"),
+        ({"value": True}, "value: by how much it is above"),
+        ({"tolerance": -0.01}, "tolerance: how far from `value`"),
+        ({"tolerance": 0.02}, "tolerance: one that includes 0 says nothing"),
+        ({"value": -0.02, "tolerance": 0.03}, "tolerance: one that includes 0 says nothing"),
+        ({"colour": "red"}, "colour: no such key"),
+    ],
+)
+def test_a_fault_of_a_difference_names_entry_and_key(changed, fault, describe):
+    sound = {"case": "spin_start", "quantity": "q", "value": 0.02, "tolerance": 0.01, "reason": "r"}
+    more = ""
+    for entry in (sound, sound | changed):
+        lines = (f"{key} = {json.dumps(value)}\n" for key, value in entry.items())
+        more += "[[difference]]\n" + "".join(lines)
+    path = describe(more)
+    if fault is None:
+        assert len(read_engine(path).differences) == 2
+        return
+    with pytest.raises(EngineFileError) as told:
+        read_engine(path)
+    [line] = str(told.value).splitlines()
+    assert line.startswith(f"{path}: difference[1].{fault}")
+
+
+def test_the_cases_of_the_ladder_have_the_names_of_their_files():
+    """By which a [[difference]] is checked."""
+    assert all(load_case(path).name == path.stem for path in LADDER.glob("*.toml"))
+
+
+def test_a_scheme_is_not_checked_where_there_is_no_solver(describe, monkeypatch):
+    monkeypatch.setenv("CROSSDEM_SOLVER", "/nowhere")
+    assert read_engine(describe('[scheme]\nslip_cap = "totl"')).scheme == {"slip_cap": "totl"}
+
+
+@pytest.mark.parametrize(
+    "files, fault",
+    [
+        (["case.json"], 'files[0]: "case.json" is the name of crossdem\'s own input'),
+        (["a.in", "sub/packing.csv"], 'files[1]: "sub/packing.csv" is the name of crossdem\'s own'),
+        (["a.in", "sub/a.in"], 'files[1]: "sub/a.in" has the name of files[0]'),
+        (["../a.in"], 'files[0]: "../a.in" does not lie below the folder'),
+        (["/a.in"], 'files[0]: "/a.in" does not lie below the folder'),
+        (["a.in", "missing"], 'files[1]: "missing" is no file beside this description'),
+        (["sub"], 'files[0]: "sub" is no file beside this description'),
+        (["pipe"], 'files[0]: "pipe" is no file beside this description'),
+        (["x" * 300], "is no file beside this description"),
+    ],
+)
+def test_a_file_that_cannot_be_copied_into_a_run_is_named(files, fault, describe, tmp_path):
+    (tmp_path / "sub").mkdir()
+    for name in ("a.in", "sub/a.in", "sub/packing.csv"):
+        (tmp_path / name).touch()
+    os.mkfifo(tmp_path / "pipe")
     usual = 'files = ["door_engine.py"]'
     assert usual in DESCRIPTION
-    with pytest.raises(EngineFileError, match="files: files beside this one"):
-        read_engine(describe(text=DESCRIPTION.replace(usual, f"files = [{files}]")))
+    with pytest.raises(EngineFileError) as told:
+        read_engine(describe(text=DESCRIPTION.replace(usual, f"files = {json.dumps(files)}")))
+    [line] = str(told.value).splitlines()
+    assert fault in line
 
 
 def test_every_fault_of_a_description_is_told_at_once(describe, tmp_path):
-    text = 'name = "Bad Name"\nversion = "x"\nrun = ["x", "{nothing}"]\n'
+    text = 'name = "Bad Name"\nversion = "x"\nrun = ["x", "{nothing}"]\nfiles = ["none", "case.json"]\n'
+    text += '[scheme]\nslip_cap = "totl"\nslip_kap = "total"\n'
     with pytest.raises(EngineFileError) as told:
         read_engine(describe(text=text))
-    assert len(str(told.value).splitlines()) == 3
+    assert len(str(told.value).splitlines()) == 7
     with pytest.raises(EngineFileError, match="run: is missing"):
         read_engine(describe(text='name = "x"\nversion = ["x"]\n'))
     with pytest.raises(EngineFileError, match="not valid TOML"):
