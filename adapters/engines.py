@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from .engine import Engine
-from .engine_file import NAME, EngineFileError, read_engine
+from .engine_file import EngineFileError, read_engine
+from .engine_file_faults import NAME
 from .external import External
 from .liggghts import Liggghts, LiggghtsAveraged
 from .native import Native

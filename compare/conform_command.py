@@ -9,7 +9,7 @@ from rich.console import Console
 from crossdem import ExitCode
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
-from crossdem.adapters.engine_file import LADDER
+from crossdem.adapters.engine_file_faults import LADDER
 from crossdem.adapters.engines import get_engine
 from crossdem.adapters.workspace import Workspace
 

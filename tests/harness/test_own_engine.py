@@ -14,7 +14,8 @@ from crossdem.adapters import engines
 from crossdem.adapters.case import load_case
 from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.engine import EngineNotFound
-from crossdem.adapters.engine_file import LADDER, EngineFileError, read_engine
+from crossdem.adapters.engine_file import EngineFileError, read_engine
+from crossdem.adapters.engine_file_faults import LADDER
 from crossdem.adapters.run import run_all
 from crossdem.adapters.run_folder import RunRequest, run_key
 from crossdem.adapters.solver import find_solver
