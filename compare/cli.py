@@ -81,7 +81,7 @@ def conform(**arguments):
 @click.option("--tier", type=click.Choice(list(TIERS)), default="smoke", show_default=True)
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=click.Path(path_type=Path, file_okay=False),
     default=Path("."),
     show_default=True,
     help="The top folder of your repository.",

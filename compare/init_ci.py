@@ -10,8 +10,11 @@ import click
 import jinja2
 
 from crossdem import ExitCode, __version__
+from crossdem.adapters.case import load_case
+from crossdem.adapters.engines import attach, unknown_engines
 from crossdem.adapters.files import write_whole
 
+from .comparison import case_faults
 from .pages import TEMPLATES
 from .recorded import RECORDS
 
@@ -25,11 +28,15 @@ PLAIN = re.compile(r"[\w./@:+~ -]*[\w./]")
 def init_ci(
     case: str | None, engine: str | None, source: str | None, tier: str, folder: Path, force: bool
 ) -> ExitCode:
-    """Write both files below `folder`. Raises UsageError where that would replace one, or a text is not PLAIN."""
+    """Write both files below `folder`, the top of a repository in which `case` and `engine` are, if they are given.
+
+    Raises UsageError where that would replace one, a text is not PLAIN, or a path leads out of the repository; CaseError,
+    EngineFileError and SolverError as a run would.
+    """
     address, version, crossdem = _whence(source)
-    case = case or str(Path(crossdem) / REFERENCE_CASE)
     values = {
         "case": case,
+        "reference_case": REFERENCE_CASE,
         "engine": engine,
         "tier": tier,
         "crossdem": crossdem,
@@ -42,11 +49,22 @@ def init_ci(
             raise click.UsageError(
                 f"{name.replace('_', ' ')}: {value!r} cannot stand in a workflow; keep to letters, digits, blanks and ./@:+~-_"
             )
+    _check_paths(
+        folder, {"CASE": case, "--engine": engine, "--source": None if address else source}
+    )
+    if engine:
+        attach(str(folder / engine))
+    if case and not (address and Path(case).is_relative_to(crossdem)):  # which a workflow clones
+        _check_case(folder / case, may_be_folder=not engine)
     texts = {
         folder / WORKFLOW: _filled("workflow.yml", values),
         folder / SNIPPET: _filled("crossdem.cmake", values),
     }
-    others = [path for path, text in texts.items() if path.exists() and path.read_text() != text]
+    others = [
+        path
+        for path, text in texts.items()
+        if path.exists() and not (path.is_file() and path.read_bytes() == text.encode())
+    ]
     if others and not force:
         raise click.UsageError(
             f"{', '.join(map(str, others))}: there already, and not as this would write it; --force replaces it"
@@ -55,8 +73,37 @@ def init_ci(
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, text.encode())
         click.echo(f"wrote {path}")
+    if not (folder / ".git").exists():
+        click.echo(
+            f"warning: {folder} is not the top of a git repository, and GitHub reads a workflow only there: choose it with --out"
+        )
+    if address and not (source or "").partition("#")[2]:
+        click.echo(
+            f"assumed: the tag {version} of {address}. It must exist there; --source ADDRESS#TAG names another."
+        )
     click.echo(_next_steps(engine))
     return ExitCode.AGREES
+
+
+def _check_paths(folder: Path, paths: dict[str, str | None]) -> None:
+    """Raises UsageError for the first of `paths`, by what it was given as, that is not one below `folder`."""
+    for name, path in paths.items():
+        if path and (
+            Path(path).is_absolute()
+            or not (folder / path).resolve().is_relative_to(folder.resolve())
+        ):
+            raise click.UsageError(
+                f"{name}: {path} is not in the repository: give a path from its top folder, which is that of --out"
+            )
+
+
+def _check_case(place: Path, may_be_folder: bool) -> None:
+    """Raises CaseError or UsageError unless `place` is a case or a folder of them, SolverError where there is no solver."""
+    paths = sorted(place.glob("*.toml")) if may_be_folder and place.is_dir() else [place]
+    if not paths:
+        raise click.UsageError(f"CASE: {place} holds no case: give FILE.toml, or a folder of them")
+    for path in paths:
+        load_case(path, (), lambda raw: case_faults(raw) + unknown_engines(raw))
 
 
 def _whence(source: str | None) -> tuple[str | None, str | None, str]:

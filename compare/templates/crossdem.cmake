@@ -5,13 +5,17 @@ find_program(CROSSDEM crossdem HINTS "${CMAKE_CURRENT_SOURCE_DIR}/{{ crossdem }}
 if(CROSSDEM)
 {% if engine %}
   add_test(NAME crossdem.conform
-           COMMAND "${CROSSDEM}" conform "{{ engine }}" "{{ case }}" --tier "{{ tier }}"
+           COMMAND "${CROSSDEM}" conform "{{ engine }}"{{ ' "' ~ case ~ '"' if case }} --tier "{{ tier }}"
                    --out "${CMAKE_CURRENT_BINARY_DIR}/crossdem"
            WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
   set_tests_properties(crossdem.conform PROPERTIES LABELS crossdem TIMEOUT 7200)
 {% else %}
+{% if not case %}
+  get_filename_component(CROSSDEM_FOLDER "${CROSSDEM}" REALPATH)
+  get_filename_component(CROSSDEM_FOLDER "${CROSSDEM_FOLDER}" DIRECTORY)
+{% endif %}
   add_test(NAME crossdem.check
-           COMMAND "${CROSSDEM}" check "{{ case }}" --tier "{{ tier }}"
+           COMMAND "${CROSSDEM}" check "{{ case or '${CROSSDEM_FOLDER}/' ~ reference_case }}" --tier "{{ tier }}"
                    --out "${CMAKE_CURRENT_BINARY_DIR}/crossdem"
            WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
   set_tests_properties(crossdem.check PROPERTIES LABELS crossdem TIMEOUT 7200)

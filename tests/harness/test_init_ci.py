@@ -1,14 +1,19 @@
 """crossdem init-ci: files that GitHub and CMake take, of which this repository's own workflow is one."""
 
 import json
+import os
+import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 import yaml
-from command_line import ROOT, crossdem
+from command_line import REFERENCE, ROOT, crossdem
+
+from crossdem import __version__
 
 WORKFLOW, SNIPPET = ".github/workflows/crossdem.yml", "cmake/crossdem.cmake"
+DESCRIPTION = ROOT / "examples" / "tutorial" / "discs.toml"
 ADDRESS = "https://example.org/crossdem.git"
 WAYS = {
     "own code": ("--engine", "codes/my code.toml", "--source", f"{ADDRESS}#v0.1.0"),
@@ -18,10 +23,27 @@ WAYS = {
 }
 
 
+def repository(folder):
+    """The files that WAYS name, in the top folder of a repository."""
+    for name in (".git", "cases", "codes"):
+        (folder / name).mkdir(parents=True, exist_ok=True)
+    shutil.copy(REFERENCE, folder / "cases" / "slope.toml")
+    shutil.copy(DESCRIPTION, folder / "codes" / "my code.toml")
+    return folder
+
+
 def written(folder, *arguments):
-    ended = crossdem("init-ci", *arguments, "--out", folder)
+    ended = crossdem("init-ci", *arguments, "--out", repository(folder))
     assert ended.returncode == 0, ended.stderr
     return folder
+
+
+def refused(folder, *arguments):
+    """What is said against it; nothing is written."""
+    ended = crossdem("init-ci", *arguments, "--out", folder)
+    assert ended.returncode == 2
+    assert not (folder / WORKFLOW).exists() and not (folder / SNIPPET).exists()
+    return ended.stderr
 
 
 def steps_of(folder):
@@ -111,6 +133,93 @@ def test_without_an_address_it_asks_for_one(tmp_path):
     assert "--source ADDRESS#TAG" in ended.stderr
 
 
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (("--engine", "codes/none.toml"), "codes/none.toml"),
+        (("--engine", "codes/none.py:Mine"), "is no Python file"),
+        (("--engine", "codes/typo.toml"), "comand"),
+        (("cases/none.toml",), "cases/none.toml"),
+        (("cases/typo.toml",), "dimensionn"),
+        (("empty",), "holds no case"),
+        (("--engine", "codes/my code.toml", "cases"), "cases"),
+    ],
+)
+def test_an_engine_or_case_that_cannot_be_read_is_refused(arguments, said, tmp_path):
+    repository(tmp_path)
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "codes" / "typo.toml").write_text(f'comand = "x"\n{DESCRIPTION.read_text()}')
+    (tmp_path / "cases" / "typo.toml").write_text(f"dimensionn = 2\n{REFERENCE.read_text()}")
+    assert said in refused(tmp_path, *arguments, "--source", ADDRESS)
+
+
+@pytest.mark.parametrize("option", ["CASE", "--engine", "--source"])
+@pytest.mark.parametrize("way", ["absolute", "above"])
+def test_a_path_that_leads_out_of_the_repository_is_refused(option, way, tmp_path):
+    repository(tmp_path / "other")
+    path = {
+        "CASE": "other/cases/slope.toml",
+        "--engine": "other/codes/my code.toml",
+        "--source": "other",
+    }[option]
+    given = tmp_path / path if way == "absolute" else Path("..") / path
+    source = () if option == "--source" else ("--source", ADDRESS)
+    arguments = (given,) if option == "CASE" else (option, given)
+    said = refused(repository(tmp_path / "mine"), *arguments, *source)
+    assert f"{option}: {given} is not in the repository" in said
+
+
+def test_a_case_of_crossdem_itself_need_not_be_there_yet(tmp_path):
+    written(tmp_path, "crossdem/reference_cases/micro", "--source", ADDRESS)
+
+
+def test_outside_the_top_of_a_git_repository_it_warns(tmp_path):
+    arguments = ("init-ci", "--source", f"{ADDRESS}#v1", "--out")
+    ended = crossdem(*arguments, tmp_path)
+    assert ended.returncode == 0
+    assert f"warning: {tmp_path} is not the top of a git repository" in ended.stdout
+    assert "warning" not in crossdem(*arguments, repository(tmp_path)).stdout
+
+
+def test_a_tag_that_was_not_given_is_named(tmp_path):
+    said = crossdem("init-ci", "--source", ADDRESS, "--out", tmp_path / "a").stdout
+    assert f"assumed: the tag v{__version__} of {ADDRESS}. It must exist there" in said
+    said = crossdem("init-ci", "--source", f"{ADDRESS}#v7", "--out", tmp_path / "b").stdout
+    assert "assumed" not in said
+
+
+def test_out_that_is_a_file_is_refused(tmp_path):
+    (tmp_path / "file").touch()
+    ended = crossdem("init-ci", "--source", ".", "--out", tmp_path / "file")
+    assert ended.returncode == 2
+    assert "is a file" in ended.stderr
+
+
+def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(tmp_path):
+    (tmp_path / "cmake").mkdir()
+    os.mkfifo(tmp_path / SNIPPET)
+    ended = crossdem("init-ci", "--source", ADDRESS, "--out", tmp_path)
+    assert ended.returncode == 2
+    assert SNIPPET in ended.stderr and "--force" in ended.stderr
+
+
+@pytest.mark.parametrize("way, page", [("own code", "conform.md"), ("cloned", "report.md")])
+def test_the_summary_is_the_page_if_there_is_one(way, page, tmp_path):
+    steps = {step.get("name"): step for step in steps_of(written(tmp_path, *WAYS[way]))}
+    summary = tmp_path / "summary"
+    for text in ("", "# AGREES"):
+        if text:
+            (tmp_path / "results" / "crossdem").mkdir(parents=True)
+            (tmp_path / "results" / "crossdem" / page).write_text(text)
+        subprocess.run(
+            ["bash", "-eo", "pipefail", "-c", steps["Summary"]["run"]],
+            cwd=tmp_path,
+            env={**os.environ, "GITHUB_STEP_SUMMARY": str(summary)},
+            check=True,
+        )
+        assert (summary.read_text() if summary.exists() else "") == text
+
+
 CMAKE = """\
 cmake_minimum_required(VERSION 3.20)
 project(mine NONE)
@@ -140,6 +249,29 @@ def test_the_snippet_adds_a_test_that_runs_crossdem_where_it_is(
     assert Path(said[said.index("--out") + 1]) == build / "crossdem"
     monkeypatch.setenv("CROSSDEM_ENDS", "1")
     assert subprocess.run(ctest, capture_output=True).returncode != 0
+
+
+@pytest.mark.parametrize("engine", [(), ("--engine", "codes/my code.toml")])
+def test_crossdem_on_the_path_is_asked_for_its_own_reference_case(engine, tmp_path, monkeypatch):
+    """It stands there as a link into the folder that it is part of."""
+    mine = written(tmp_path / "mine", *engine, "--source", ADDRESS)
+    (mine / "CMakeLists.txt").write_text(CMAKE)
+    folder, path = tmp_path / "elsewhere", tmp_path / "bin"
+    folder.mkdir()
+    path.mkdir()
+    (folder / "crossdem").write_text(STAND_IN)
+    (folder / "crossdem").chmod(0o755)
+    (path / "crossdem").symlink_to(folder / "crossdem")
+    monkeypatch.setenv("PATH", f"{path}:{os.environ['PATH']}")
+    build = mine / "build"
+    subprocess.run(["cmake", "-S", mine, "-B", build], check=True, capture_output=True)
+    subprocess.run(["ctest", "--test-dir", build], check=True, capture_output=True)
+    command, first, second, *_ = (path / "crossdem.said").read_text().split("|")
+    if engine:
+        assert (command, first, second) == ("conform", "codes/my code.toml", "--tier")
+    else:
+        reference = folder / "reference_cases" / "bar_penetration.toml"
+        assert (command, first) == ("check", str(reference))
 
 
 def test_without_crossdem_the_snippet_says_so_and_adds_nothing(tmp_path, monkeypatch):
