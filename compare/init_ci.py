@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -116,11 +117,12 @@ def _whence(source: str | None) -> tuple[str | None, str | None, str]:
 
 def _own_address() -> str:
     """Where this checkout was cloned from. Raises UsageError where that is not known."""
-    asked = ["git", "-C", RECORDS.parent, "config", "--get", "remote.origin.url"]
-    try:
-        told = subprocess.run(asked, capture_output=True, text=True).stdout.strip()
-    except OSError:
-        told = ""
+    checkout = RECORDS.parent.parent
+    asked = ["git", "-C", checkout, "config", "--get", "remote.origin.url"]
+    told = ""
+    if (checkout / ".git").exists():  # else git may tell of a repository around an installation
+        with suppress(OSError):
+            told = subprocess.run(asked, capture_output=True, text=True).stdout.strip()
     if "://" not in told and not told.startswith("git@"):
         raise click.UsageError(
             "it is not known where a workflow gets crossdem from: give --source ADDRESS#TAG of its repository, or the folder "

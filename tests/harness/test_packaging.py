@@ -27,7 +27,7 @@ def _python(code, *, path, cwd):
 def installed(tmp_path_factory):
     """The folder that `pip install` fills, from a copy of the sources so that the checkout stays clean."""
     sources = tmp_path_factory.mktemp("sources")
-    for folder in ("adapters", "compare"):
+    for folder in ("adapters", "compare", "reference_cases"):
         shutil.copytree(
             ROOT / folder, sources / folder, ignore=shutil.ignore_patterns("__pycache__")
         )
@@ -59,7 +59,7 @@ def test_the_installed_package_knows_its_version(installed, tmp_path):
     assert here == recorded
 
 
-@pytest.mark.parametrize("folder", ["adapters", "compare"])
+@pytest.mark.parametrize("folder", ["adapters", "compare", "reference_cases"])
 def test_every_file_of_the_checkout_is_installed(installed, folder):
     def files(root):
         found = (path for path in (root / folder).rglob("*") if path.is_file())
@@ -78,3 +78,34 @@ def test_the_installed_command_resolves_a_case(installed, tmp_path):
     )
     assert ended.returncode == 0, ended.stderr
     assert '"name":"bar_penetration"' in ended.stdout
+
+
+def test_the_installed_command_conforms_with_its_own_cases(installed, tmp_path):
+    """As far as the ladder, on which this code fails at every run."""
+    (tmp_path / "code.toml").write_text(
+        'name = "code"\nversion = ["echo", "1"]\nrun = ["false", "{case}", "{packing}", "{out}"]\n'
+    )
+    ended = subprocess.run(
+        [PYTHON, installed / "bin" / "crossdem", "conform", "code.toml", "--no-bed"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(installed), "CROSSDEM_SOLVER": str(find_solver())},
+        capture_output=True,
+        text=True,
+    )
+    assert ended.returncode == 3, ended.stderr
+    assert "code, 1: ladder 0/" in ended.stdout
+
+
+def test_an_installation_does_not_take_the_repository_around_it_for_its_own(installed, tmp_path):
+    git = ["git", "-C", installed]
+    subprocess.run([*git, "init", "--quiet"], check=True)
+    subprocess.run([*git, "remote", "add", "origin", "https://example.org/mine.git"], check=True)
+    ended = subprocess.run(
+        [PYTHON, installed / "bin" / "crossdem", "init-ci"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(installed)},
+        capture_output=True,
+        text=True,
+    )
+    assert ended.returncode == 2
+    assert "--source ADDRESS#TAG" in ended.stderr
