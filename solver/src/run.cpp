@@ -208,7 +208,10 @@ void run(const Case& setup, Packing packing, const std::filesystem::path& folder
   const auto end = [&](const char* error = nullptr) {
     if (keeps_checkpoints) recording.make_motion(simulation.particles());
     if (keeps_checkpoints || !error) write_end(setup, folder, checkpoint, progress, simulation, error);
-    if (keeps_checkpoints) remove_checkpoint(checkpoint, folder);
+    if (!keeps_checkpoints) return;
+    force_to_disk(folder / end_file);
+    force_to_disk(folder);
+    remove_checkpoint(checkpoint, folder);
   };
 
   try {
