@@ -74,7 +74,7 @@ class Runs:
 
     def killed(self, output, seconds, *more):
         """Whether it was killed after so many seconds, and not done before."""
-        process = subprocess.Popen(self.command(output, "--checkpoint-every", "0", *more))
+        process = subprocess.Popen(self.command(output, "--checkpoint-every", "0.005", *more))
         try:
             assert process.wait(seconds) == 0
             return False
@@ -282,14 +282,14 @@ def test_a_checkpoint_that_was_cut_short_itself_is_begun_afresh(runs, cut_short)
         folder = runs.folder / f"begun {number}"
         folder.mkdir()
         (folder / "checkpoint.part").write_bytes(begun)
-        assert runs.whole(folder.name, "--checkpoint-every", "0").returncode == 0
+        assert runs.whole(folder.name, "--checkpoint-every", "1e9").returncode == 0
         assert {path.name for path in folder.iterdir()} == WRITTEN
     for others in ({"checkpoint.part": b"mine"}, {"checkpoint.part": head, "notes": b"mine"}):
         folder = runs.folder / f"of {len(others)} others"
         folder.mkdir()
         for name, content in others.items():
             (folder / name).write_bytes(content)
-        ended = runs.whole(folder.name, "--checkpoint-every", "0")
+        ended = runs.whole(folder.name, "--checkpoint-every", "1e9")
         assert ended.returncode == 2 and "is not an empty folder" in ended.stderr
         assert state_of(folder) == others
 
