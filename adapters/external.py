@@ -85,6 +85,13 @@ class External(Engine):
     def read_output(self, case: Case, packing: Packing, run_dir: Path, manifest: dict) -> Dataset:
         return read_contract(self.name, self.columns, case, packing, run_dir / OUTPUT, manifest)
 
+    def copy_to(self, folder: Path) -> None:
+        """Its description and its files, into the new `folder`."""
+        for name in (self.source.name, *self.files):
+            place = folder / name
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(self._beside(name), place)
+
     def _beside(self, name: str) -> Path:
         path = self.source.parent / name
         if not path.is_file():

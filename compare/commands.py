@@ -250,7 +250,6 @@ def dataset_build(
     with _workspace(case, overrides, out) as workspace:
         return build(
             case,
-            case_file,
             overrides,
             engines,
             seeds,

@@ -11,14 +11,15 @@ from rich.console import Console
 from crossdem import ExitCode
 from crossdem.adapters.case import Case
 from crossdem.adapters.dataset import Dataset
-from crossdem.adapters.engines import attached
+from crossdem.adapters.engines import get_engine
+from crossdem.adapters.external import External
 from crossdem.adapters.gates import REFERENCE
 from crossdem.adapters.workspace import Workspace, WorkspaceError
 
 from .comparison import compare_runs
 from .dataset_archive import archive_of, write_archive
 from .dataset_documents import command_of
-from .dataset_package import Origin, refuse_taken, write_package
+from .dataset_package import Origin, place_of, refuse_taken, write_package
 from .dataset_sums import SUMS, sha256_of
 from .dataset_verify import faults_of_package
 from .horizon_runs import horizon_of_runs
@@ -36,7 +37,6 @@ def refuse_places(output: Path, archive: bool) -> None:
 
 def build(
     case: Case,
-    case_file: Path,
     overrides: Sequence[str],
     engines: Sequence[str],
     seeds: int,
@@ -61,26 +61,21 @@ def build(
         folders |= dict.fromkeys(runs.folders)
     horizon = horizon_of_runs(case, engines, {}, workspace, here(jobs, profile), Console())
     comparison = compare_runs(case, map(Dataset.read, folders), horizon=horizon)
-    given = ["--seeds", seeds, "--native-seeds", native_seeds, "--twins", twins]
-    given += [word for change in overrides for word in ("--set", change)]
-    given += ["--mpi-ranks", ranks] if ranks > 1 else []
-    given += [word for name in authors for word in ("--author", name)]
-    words = ["dataset", "build", case_file.name, *_named(engines), *given, "--output", output.name]
-    command = command_of(words)
-    origin = Origin(command, tuple(overrides), tuple(authors))
+    own = tuple(one for one in map(get_engine, engines) if isinstance(one, External))
+    ours = [name for name in engines if name not in {one.name for one in own}]
+    words = ["--engines", ",".join(ours) or "none"]
+    words += [word for one in own for word in ("--engine", place_of(one))]
+    words += ["--seeds", seeds, "--native-seeds", native_seeds, "--twins", twins]
+    words += ["--mpi-ranks", ranks] if ranks > 1 else []
+    words += [word for name in authors for word in ("--author", name)]
+    command = command_of(["dataset", "build", "case.json", *words, "--output", output.name])
+    origin = Origin(command, tuple(overrides), own, tuple(authors))
     identity = write_package(case, list(folders), comparison, origin, output)
     click.echo(f"{output}: {plural(len(folders), 'run')}, verdict {comparison.verdict.word}")
     click.echo(f"identity (SHA-256 of {SUMS}): {identity}")
     if archive:
         click.echo(write_archive(output))
     return ExitCode.AGREES
-
-
-def _named(engines: Sequence[str]) -> list[str]:
-    """The words of a command that name `engines`; a file of a user's engine by its name alone, for any machine."""
-    own = {name: description for name in engines for description in attached([name])}
-    words = ["--engines", ",".join(name for name in engines if name not in own)]
-    return words + [word for file in own.values() for word in ("--engine", Path(file).name)]
 
 
 def verify(folder: Path, identity: str | None) -> ExitCode:

@@ -30,6 +30,7 @@ TIMED = (
 MADE_BY = {
     "runs/*/inputs/*": "crossdem, for the engine to read",
     "runs/*": "the run's engine by the command in its manifest.json, read by crossdem",
+    "engines/*": "whoever has the code",
     "packings/*": "crossdem-solver pack",
     "*": "crossdem dataset build",
 }
@@ -71,13 +72,18 @@ def dictionary(tables: Mapping[str, Sequence[Column]]) -> str:
     return text.getvalue()
 
 
-def provenance(about: Mapping, programs: Sequence[dict], files: Sequence[str]) -> dict:
+def provenance(
+    about: Mapping, programs: Sequence[dict], libraries: Mapping[str, str], files: Sequence[str]
+) -> dict:
     """provenance.json: versions, the command, what made each of `files`, and which of them vary from build to build."""
     made_by = {
         name: next(who for key, who in MADE_BY.items() if fnmatchcase(name, key)) for name in files
     }
     return {
         "crossdem": about["version"],
+        "crossdem_commit": about["commit"],
+        "crossdem_solver_sha256": about["solver"],
+        "libraries": dict(libraries),
         "command": about["command"],
         "engines": list(programs),
         "vary_from_build_to_build": list(TIMED),

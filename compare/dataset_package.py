@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,8 @@ import pandas as pd
 
 from crossdem import __version__
 from crossdem.adapters.case import Case
+from crossdem.adapters.external import External
+from crossdem.adapters.solver import solver_sha256
 from crossdem.adapters.workspace import WorkspaceError
 
 from . import dataset_documents as documents
@@ -25,7 +28,7 @@ from .dataset_descriptor import DESCRIPTOR, data_package
 from .ensemble import Ensemble
 from .finished_runs import read_runs
 from .provenance import provenance
-from .record import record_text
+from .record import libraries, record_text
 from .recorded import CONTENT
 from .wording import packings, plural
 
@@ -34,9 +37,15 @@ from .wording import packings, plural
 class Origin:
     """What a package says of how it came about, beside its runs."""
 
-    command: str  # makes it again
-    overrides: tuple[str, ...] = ()  # key.path=value, of what the file of its case says
+    command: str  # makes it again, in its folder
+    overrides: tuple[str, ...] = ()  # key.path=value, of what the file of its case said
+    engines: tuple[External, ...] = ()  # users' own
     authors: tuple[str, ...] = ()
+
+
+def place_of(engine: External) -> str:
+    """Of the description of a user's engine in a package, as --engine takes it."""
+    return f"engines/{engine.name}/{Path(engine.description).name}"
 
 
 def refuse_taken(folder: Path) -> None:
@@ -82,6 +91,8 @@ def _fill(
         place.mkdir(parents=True)
         for name in ("packing.csv", "packing.json"):
             shutil.copyfile(packing.folder / name, place / name)
+    for engine in origin.engines:
+        engine.copy_to((folder / place_of(engine)).parent)
     manifests = _by_folder(ensemble, runs)
     about = _about(case, comparison, list(manifests.values()), origin)
     columns = tables(list(ensemble.profiles.columns))
@@ -103,7 +114,7 @@ def _fill(
     programs = [vars(one) for one in provenance(manifests.values()).programs]
     to_come = ["provenance.json", METADATA, DESCRIPTOR, SUMS]
     names = sorted([*files_in(folder), *to_come])
-    origins = documents.provenance(about, programs, names)
+    origins = documents.provenance(about, programs, libraries(), names)
     _write(folder / "provenance.json", documents.json_text(origins))
     sizes = {name: None if name in to_come[1:] else _size(folder / name) for name in names}
     _write(folder / METADATA, documents.json_text(crate(about, sizes, manifests)))
@@ -156,4 +167,18 @@ def _about(
         "engines": engines,
         "verdict": comparison.verdict.word,
         "command": origin.command,
+        "commit": _commit(),
+        "solver": solver_sha256(),
     }
+
+
+def _commit() -> str | None:
+    """Of the checkout that this crossdem is of, marked where it was changed; None for an installation."""
+    checkout = Path(__file__).resolve().parents[1]
+    if not (checkout / ".git").exists():
+        return None
+    asked = ["git", "-C", checkout, "describe", "--always", "--dirty", "--abbrev=40"]
+    try:
+        return subprocess.run(asked, capture_output=True, text=True).stdout.strip() or None
+    except OSError:
+        return None

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import tarfile
@@ -20,7 +21,7 @@ from crossdem import ExitCode
 from crossdem.adapters import engines
 from crossdem.adapters.case import load_case
 from crossdem.adapters.motion_file import DATASETS
-from crossdem.adapters.solver import find_solver
+from crossdem.adapters.solver import find_solver, solver_sha256
 from crossdem.compare.cli import main
 from crossdem.compare.dataset_documents import TIMED
 from crossdem.compare.dataset_record import read_package
@@ -255,16 +256,24 @@ def test_no_file_names_a_folder_of_this_machine(package, case_file):
         assert not [place for place in here if place.encode() in content], name
 
 
-def test_the_command_of_a_package_with_a_users_code_names_it(case_file, tmp_path, monkeypatch):
-    monkeypatch.setattr(engines, "ENGINES", dict(engines.ENGINES))
+def test_the_command_of_a_package_with_a_users_code_makes_it_again(case_file, tmp_path, monkeypatch):
+    ours = dict(engines.ENGINES)
+    monkeypatch.setattr(engines, "ENGINES", dict(ours))
     monkeypatch.setenv("CROSSDEM_SOLVER", str(find_solver()))
     shutil.copy(Path(__file__).with_name("door_engine.py"), tmp_path)
     (tmp_path / "door.toml").write_text(DESCRIPTION)
     own = ["--engines", "native", "--engine", str(tmp_path / "door.toml"), "--seeds", "1"]
     assert build(case_file, tmp_path / "package", tmp_path / "work", *own) == 0
-    command = json.loads((tmp_path / "package" / "provenance.json").read_bytes())["command"]
-    assert "--engines native --engine door.toml --seeds 1 " in command
-    assert str(tmp_path) not in command
+    told = json.loads((tmp_path / "package" / "provenance.json").read_bytes())
+    words = shlex.split(told["command"])
+    assert "--engines native --engine engines/door/door.toml --seeds 1 " in told["command"]
+    assert told["crossdem_solver_sha256"] == solver_sha256() and "numpy" in told["libraries"]
+    monkeypatch.chdir(tmp_path / "package")
+    monkeypatch.setattr(engines, "ENGINES", ours)
+    again = ["--out", str(tmp_path / "again"), "--output", str(tmp_path / "other")]
+    assert main([*words[1 : words.index("--output")], *again]) == 0
+    for name in ("case.json", "tables/endpoints.csv", "engines/door/door_engine.py"):
+        assert (tmp_path / "other" / name).read_bytes() == Path(name).read_bytes()
 
 
 def test_the_crate_defines_all_that_it_names(package):
