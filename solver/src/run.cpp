@@ -145,7 +145,7 @@ void write_end(const Case& setup, const std::filesystem::path& folder, const Che
                          {"particles", simulation.particles().count()},
                          {"frames", progress.frames},
                          {"samples", progress.samples}};
-  if (error) done["error"] = error;
+  if (error != nullptr) done["error"] = error;
   LineFile(folder / end_file).line(done.dump(2));
 }
 
@@ -207,7 +207,7 @@ void run(const Case& setup, Packing packing, const std::filesystem::path& folder
   };
   const auto end = [&](const char* error = nullptr) {
     if (keeps_checkpoints) recording.make_motion(simulation.particles());
-    if (keeps_checkpoints || !error) write_end(setup, folder, checkpoint, progress, simulation, error);
+    if (keeps_checkpoints || error == nullptr) write_end(setup, folder, checkpoint, progress, simulation, error);
     if (!keeps_checkpoints) return;
     force_to_disk(folder / end_file);
     force_to_disk(folder);

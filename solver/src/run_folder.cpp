@@ -27,7 +27,7 @@ void claim_folder(const std::filesystem::path& folder) {
     throw FileError(folder, "is not an empty folder; nothing was written");
 }
 
-FolderLock::FolderLock(const std::filesystem::path& folder) : descriptor_(-1) {
+FolderLock::FolderLock(const std::filesystem::path& folder) {
   make_folder(folder);
   descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0) throw FileError(folder, std::string("cannot be opened: ") + std::strerror(errno));
