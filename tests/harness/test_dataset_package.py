@@ -256,7 +256,9 @@ def test_no_file_names_a_folder_of_this_machine(package, case_file):
         assert not [place for place in here if place.encode() in content], name
 
 
-def test_the_command_of_a_package_with_a_users_code_makes_it_again(case_file, tmp_path, monkeypatch):
+def test_the_command_of_a_package_with_a_users_code_makes_it_again(
+    case_file, tmp_path, monkeypatch
+):
     ours = dict(engines.ENGINES)
     monkeypatch.setattr(engines, "ENGINES", dict(ours))
     monkeypatch.setenv("CROSSDEM_SOLVER", str(find_solver()))
