@@ -17,13 +17,12 @@ from crossdem.adapters.workspace import Workspace
 
 from .bench_workloads import QUICK_WORKLOADS, WORKLOADS
 from .comparison import ComparisonError, case_faults, compare_runs
-from .ensemble import Ensemble
 from .explain import explain_case
 from .horizon import Horizon
 from .horizon_runs import find_horizon, horizon_of_runs
 from .dataset_record import read_package
 from .record_command import plans_of, record_case
-from .recorded import check_writable, find_record
+from .recorded import Record, check_writable, find_record
 from .replay import replayed, restore_packings, said_of
 from .replaced import replaced_by
 from .runs import Runs, here, run_engines, write_inputs
@@ -58,7 +57,7 @@ def check(
 
 def _replay(case, engines, seeds, twins, out, overrides, jobs, profile, ranks, record) -> ExitCode:
     others = replayed(record, engines, seeds, twins)
-    click.echo(said_of(record, others))
+    click.echo(said_of(others))
     runs, found = Runs((), {}), None
     with _workspace(case, overrides, out, "-replay") as workspace:
         if engines:
@@ -325,7 +324,7 @@ def _report(
     runs: Runs,
     workspace: Workspace,
     horizon: Horizon | None = None,
-    recorded: Ensemble | None = None,
+    recorded: Record | None = None,
 ) -> ExitCode:
     from .report import write_report  # here: its drawing library takes half a second to load
 

@@ -21,6 +21,7 @@ from .horizon import Horizon
 from .intake import Intake, failed_gates, obstacles
 from .opinions import Opinions
 from .quantities import QUANTITIES, unknown_quantities
+from .recorded import Record
 from .verdict import Verdict, decide
 
 Run = tuple[str, int, int]  # engine, seed, twin
@@ -42,7 +43,9 @@ class Comparison:
     engines: tuple[str, ...]  # with and without results
     ensemble: Ensemble  # all runs, recorded ones too
     endpoints: pd.DataFrame  # ensemble.packing_means of its endpoints
-    datasets: tuple[Dataset, ...]  # twin 0 of each packing, for pictures; none of recorded runs
+    datasets: tuple[
+        Dataset, ...
+    ]  # twin 0 of each packing, for pictures; of recorded runs those that lie there whole
     recorded: frozenset[Run]  # runs of the ensemble that were read from a record
     failures: dict[tuple[str, int], str]  # (engine, seed): why there is no dataset
     results: tuple[CheckResult, ...]
@@ -80,7 +83,7 @@ def compare_runs(
     failures: dict[tuple[str, int], str] | None = None,
     unsupported: frozenset[tuple[str, int]] = frozenset(),
     horizon: Horizon | None = None,
-    recorded: Ensemble | None = None,
+    recorded: Record | None = None,
 ) -> Comparison:
     """Compare the `datasets` of one `case`, and with them the `recorded` runs of it; `failures` says for each
     (engine, seed) without a dataset why.
@@ -92,12 +95,12 @@ def compare_runs(
     Raises ComparisonError when the runs are not of this case, a run is there twice, or a check makes no sense.
     """
     failures = dict(failures or {})
-    read = frozenset(recorded.manifests if recorded else ())
+    read = frozenset(recorded.ensemble.manifests if recorded else ())
     intake = Intake(case, read)
     ensemble = Ensemble.of(intake.sound(datasets))
     if faults := case_faults(case.resolved) + intake.faults:
         raise ComparisonError(faults)
-    ensemble = ensemble.joined(recorded) if recorded else ensemble
+    ensemble = ensemble.joined(recorded.ensemble) if recorded else ensemble
     # Anew for all: a recorded run meets another native run here than where it was recorded.
     share = case.resolved["gates"]["contacts_share"]
     ensemble = replace(ensemble, manifests=with_contacts_gates(ensemble.manifests, share))
@@ -130,13 +133,14 @@ def compare_runs(
         failed_gates(ensemble.manifests, engines),
         horizon.strays if horizon else (),
         ensemble.runs_each,
+        (recorded.source, len(recorded.seeds)) if recorded else None,
     )
     return Comparison(
         case,
         engines,
         ensemble,
         endpoints,
-        intake.pictured(order),
+        intake.pictured(order, recorded.datasets if recorded else ()),
         read,
         failures,
         results,

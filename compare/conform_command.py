@@ -64,7 +64,7 @@ def examine(
 def _bed(engine, case, record, tier, workspace, jobs, console) -> Comparison:
     seeds, twins = TIERS[tier]
     others = replayed(record, [engine], seeds, twins)
-    console.print(said_of(record, others))
+    console.print(said_of(others))
     space = Workspace(workspace.root / "bed")
     restore_packings(case, record, seeds, space)
     runs = run_engines(case, [engine], seeds, space, jobs, console, twins)

@@ -28,10 +28,18 @@ def read_package(folder: Path, case: Case) -> Record:
                 f"Use {folder / 'case.json'}, or build a package of this one"
             ]
         )
-    runs = pd.read_csv(folder / "tables" / "runs.csv")["folder"]
-    ensemble, packings = read_runs([folder / name for name in runs])
+    runs = pd.read_csv(folder / "tables" / "runs.csv")
+    folders = {(run.engine, run.seed, run.twin): folder / run.folder for run in runs.itertuples()}
+    ensemble, packings = read_runs(list(folders.values()))
     manifests = {
         run: about | {DATE: about["started_utc"]} for run, about in ensemble.manifests.items()
     }
     ensemble = Ensemble(ensemble.endpoints, ensemble.profiles, ensemble.fields, manifests)
-    return Record(packaged, ensemble, *packing_files(packings), {}, f"the package {folder}")
+    return Record(
+        packaged,
+        ensemble,
+        *packing_files(packings),
+        about={},
+        source=f"the package {folder}",
+        folders=folders,
+    )

@@ -39,9 +39,10 @@ class Intake:
                     self._kept.append(dataset)
                 yield dataset
 
-    def pictured(self, order: dict[str, int]) -> tuple[Dataset, ...]:
-        """Twin 0 of each packing, engines in this order."""
-        return tuple(sorted(self._kept, key=lambda run: (order[run.engine], run.seed)))
+    def pictured(self, order: dict[str, int], others: Iterable[Dataset]) -> tuple[Dataset, ...]:
+        """Twin 0 of each packing, `others` too, engines in this order."""
+        runs = [*self._kept, *others]
+        return tuple(sorted(runs, key=lambda run: (order[run.engine], run.seed)))
 
 
 def run_name(run: tuple[str, int, int]) -> str:

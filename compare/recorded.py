@@ -9,13 +9,14 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from crossdem.adapters.case import Case, CaseError
+from crossdem.adapters.dataset import Dataset
 from crossdem.adapters.files import write_whole
 from crossdem.adapters.packing import Packing, PackingError
 from crossdem.adapters.workspace import WorkspaceError
@@ -61,10 +62,22 @@ class Record:
     about_packings: Mapping[int, dict]  # packing.json by seed
     about: dict  # manifest.json: what, when, with what
     source: str = "the record"  # for people
+    # Of runs that lie there whole: a package has them, a record of small tables has none.
+    folders: Mapping[tuple[str, int, int], Path] = field(default_factory=dict)
 
     @property
     def seeds(self) -> tuple[int, ...]:
         return tuple(sorted(self.packings))
+
+    @property
+    def datasets(self) -> Iterator[Dataset]:
+        """The ensemble's runs that lie there whole, twin 0 of each packing: what pictures are drawn of."""
+        whole = (run for run in self.ensemble.manifests if run in self.folders and run[2] == 0)
+        return (Dataset.read(self.folders[run]) for run in whole)
+
+    def selected(self, runs: Iterable[tuple[str, int, int]]) -> Record:
+        """With these of its runs alone, and all its packings."""
+        return replace(self, ensemble=self.ensemble.selected(runs))
 
     def write(self, folder: Path) -> None:
         """Into `folder`, in place of what was there: whole or not at all."""

@@ -7,18 +7,18 @@ from collections.abc import Sequence
 from crossdem.adapters.case import Case
 from crossdem.adapters.workspace import Workspace
 
-from .ensemble import Ensemble
 from .recorded import Record, RecordError
 from .wording import listed, packings
 
 
-def said_of(record: Record, others: Ensemble) -> str:
-    """What of a comparison comes from `record`, for people."""
-    counted = packings(len({seed for _, seed, _ in others.manifests}), others.runs_each)
-    return f"from {record.source}: {counted} of {listed(others.engines)}"
+def said_of(others: Record) -> str:
+    """What of a comparison is recorded, for people."""
+    ensemble = others.ensemble
+    counted = packings(len({seed for _, seed, _ in ensemble.manifests}), ensemble.runs_each)
+    return f"from {others.source}: {counted} of {listed(ensemble.engines)}"
 
 
-def replayed(record: Record, engines: Sequence[str], seeds: int | None, twins: int) -> Ensemble:
+def replayed(record: Record, engines: Sequence[str], seeds: int | None, twins: int) -> Record:
     """The recorded runs of all other engines than `engines`, as far as seeds (None: all) and twins are asked for.
 
     Raises RecordError where the record has fewer packings, or leaves nothing to compare.
@@ -28,12 +28,12 @@ def replayed(record: Record, engines: Sequence[str], seeds: int | None, twins: i
     if missing:
         has = f"{len(record.seeds)} packings, and not seed {missing[0]}"
         raise RecordError([f"{record.source} has {has}: ask for fewer --seeds, or another --tier"])
-    others = record.ensemble.selected(
+    others = record.selected(
         run
         for run in record.ensemble.manifests
         if run[0] not in engines and run[1] <= seeds and run[2] <= twins
     )
-    if len({*engines, *others.engines}) < 2:
+    if len({*engines, *others.ensemble.engines}) < 2:
         has = listed(record.ensemble.engines)
         raise RecordError(
             [

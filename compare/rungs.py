@@ -200,7 +200,7 @@ def answer_rung(case: dict, engine: str, entry: dict, runs: Sequence[Dataset]) -
 
 def _own_differences(engine: str, case_name: str) -> list[dict]:
     """Those that the description of a user's engine names for this case."""
-    own = getattr(get_engine(engine), "differences", ())
+    own = getattr(get_engine(engine), "difference", ())
     return [{"engine": engine, **entry} for entry in own if entry["case"] == case_name]
 
 

@@ -48,11 +48,13 @@ def decide(
     failed_gates: Sequence[str] = (),
     strays: Sequence[str] = (),
     runs_each: Sequence[int] = (1,),
+    recorded: tuple[str, int] | None = None,
 ) -> Verdict:
     """The verdict: a difference weighs more than an engine without result, and that more than an open question.
 
     `failed_gates` are lines that name the run and the gate; `strays` name the engines that differ particle by particle
-    before the horizon, and when: that is no chance, and comes first. `runs_each` says how many runs the packings have.
+    before the horizon, and when: that is no chance, and comes first. `runs_each` says how many runs the packings have,
+    `recorded` from where runs come that were not made here, and how many packings there are.
 
     AGREES is the claim that every check is EQUIVALENT. Where every open check has fewer packings than that takes, no
     difference is as much as can be said, and it is called CONSISTENT. A check that stays open with packings enough to show
@@ -79,9 +81,11 @@ def decide(
     elif all(outcome == checks.EQUIVALENT for outcome in outcomes):
         word, sentence, next_step = AGREES, *_agrees(engines, results, behind)
     elif unsettled := [result for result in still_open if _planned_for(result)]:
-        word, sentence, next_step = INCONCLUSIVE, *_unsettled(unsettled, results, behind)
+        word, sentence, next_step = INCONCLUSIVE, *_unsettled(unsettled, results, behind, recorded)
     else:
-        word, sentence, next_step = CONSISTENT, *_consistent(engines, results, behind, needed)
+        word, sentence, next_step = CONSISTENT, *_consistent(
+            engines, results, behind, needed, recorded
+        )
     return Verdict(word, sentence, next_step, seeds, needed)
 
 
@@ -169,7 +173,7 @@ def _all(checked: int) -> str:
     return "the one quantity checked" if checked == 1 else f"all {checked} quantities"
 
 
-def _consistent(engines, results, behind, needed) -> tuple[str, str]:
+def _consistent(engines, results, behind, needed, recorded) -> tuple[str, str]:
     shown = sum(result.outcome == checks.EQUIVALENT for result in results)
     sentence = (
         f"{behind} of {listed(engines)} show no check to be DIFFERENT, and every gate passed. This is no "
@@ -178,10 +182,11 @@ def _consistent(engines, results, behind, needed) -> tuple[str, str]:
     )
     if needed is None:
         return sentence, "Widen the margins that no reasonable number of packings can meet."
-    return sentence, f"For a statement of equivalence run the same with --seeds {needed}."
+    next_step = f"For a statement of equivalence run the same with --seeds {needed}."
+    return sentence, next_step + _beyond_record(needed, recorded)
 
 
-def _unsettled(unsettled, results, behind) -> tuple[str, str]:
+def _unsettled(unsettled, results, behind, recorded) -> tuple[str, str]:
     """Of the checks that have packings enough and stay open all the same."""
     worst = max(unsettled, key=_margins_apart)
     a, b = worst.pair
@@ -199,7 +204,18 @@ def _unsettled(unsettled, results, behind) -> tuple[str, str]:
         )
     if enough <= len(worst.seeds):
         return sentence, f"{apart}, and scatters more than was planned for: run more packings."
-    return sentence, f"{apart}: if it is as measured, --seeds {enough} settles it in most cases."
+    next_step = f"{apart}: if it is as measured, --seeds {enough} settles it in most cases."
+    return sentence, next_step + _beyond_record(enough, recorded)
+
+
+def _beyond_record(seeds: int, recorded: tuple[str, int] | None) -> str:
+    """How to come to so many packings where the record has fewer."""
+    if recorded is None or seeds <= recorded[1]:
+        return ""
+    source, there = recorded
+    return (
+        f" As {source} has {plural(there, 'packing')}, run all engines here for that, without it."
+    )
 
 
 def _margins_apart(result: CheckResult) -> float:

@@ -26,6 +26,7 @@ from crossdem.compare.cli import main
 from crossdem.compare.dataset_documents import TIMED
 from crossdem.compare.dataset_record import read_package
 from crossdem.compare.dataset_sums import SUMS, files_in, sha256_of, write_sums
+from crossdem.compare.replay import replayed
 
 NATIVE = ("--engines", "native", "--seeds", "1", "--native-seeds", "2", "--jobs", "2")
 
@@ -317,6 +318,17 @@ def test_packings_are_read_back_to_the_last_bit(package, case_file, tmp_path):
         assert (tmp_path / str(seed) / "packing.csv").read_bytes() == there.read_bytes()
 
 
+def test_of_the_runs_asked_for_twin_0_of_each_packing_is_there_to_draw(case_file, tmp_path):
+    ensemble = ("--engines", "native", "--seeds", "2", "--twins", "1", "--jobs", "2")
+    assert build(case_file, tmp_path / "package", tmp_path / "work", *ensemble) == 0
+    record = read_package(tmp_path / "package", load_case(case_file))
+    for seeds in (1, 2):
+        asked = replayed(record, ["liggghts"], seeds, 1)
+        assert len(asked.ensemble.manifests) == 2 * seeds
+        drawn = [(run.engine, run.seed, run.twin) for run in asked.datasets]
+        assert drawn == [("native", seed, 0) for seed in range(1, seeds + 1)]
+
+
 def against(case_file, package, out, *options):
     return main(["check", str(case_file), "--against", str(package), "--out", str(out), *options])
 
@@ -346,6 +358,8 @@ def test_runs_made_here_are_compared_with_those_of_engines_that_are_gone(
         ]
         assert twin["values"] == run["values"] and twin["packing_hash"] == run["packing_hash"]
     assert here["checks"] == there["checks"]
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert page.count('<svg class="bed"') == 8  # four times of each code, run here or not
 
 
 def test_a_damaged_package_or_one_of_another_case_is_not_compared_with(

@@ -44,12 +44,15 @@ def test_recorded_engines_are_compared_where_there_is_none(records, tmp_path, mo
 
 
 def test_the_engines_asked_for_are_not_taken_from_the_record(recorded):
-    assert replayed(recorded, ["native"], 2, 1).engines == ("liggghts",)
-    assert replayed(recorded, ["yade"], 2, 1).engines == ("native", "liggghts")
+    assert replayed(recorded, ["native"], 2, 1).ensemble.engines == ("liggghts",)
+    assert replayed(recorded, ["yade"], 2, 1).ensemble.engines == ("native", "liggghts")
 
 
 def test_packings_and_twins_are_those_asked_for(recorded):
-    assert set(replayed(recorded, [], 1, 0).manifests) == {("native", 1, 0), ("liggghts", 1, 0)}
+    assert set(replayed(recorded, [], 1, 0).ensemble.manifests) == {
+        ("native", 1, 0),
+        ("liggghts", 1, 0),
+    }
 
 
 def test_more_packings_than_recorded_are_refused_with_their_number(records, tmp_path, capsys):
@@ -67,7 +70,7 @@ def test_one_engine_that_is_recorded_and_run_alone_is_no_comparison(engines):
 
 
 def test_one_recorded_engine_is_compared_with_one_that_is_run():
-    assert replayed(record(engines=("native",)), ["yade"], 2, 1).engines == ("native",)
+    assert replayed(record(engines=("native",)), ["yade"], 2, 1).ensemble.engines == ("native",)
 
 
 def test_of_recorded_runs_alone_all_packings_are_compared_unless_it_is_said(
@@ -158,7 +161,7 @@ def test_a_native_run_made_here_sets_the_gate_on_contacts_of_recorded_runs(recor
     others = replayed(recorded, ["native"], 2, 0)
     here = [dataset(recorded.case, seed=seed, packing_hash=packing_hash(seed)) for seed in (1, 2)]
     here[1].resistance["contacts"] = 1600
-    for about in others.manifests.values():
+    for about in others.ensemble.manifests.values():
         passed = {"name": "contacts_share", "value": 0, "limit": 0.01, "passed": True}
         about["gates"] = [*about["gates"], passed | {"message": "as recorded"}]
     comparison = compare_runs(recorded.case, here, recorded=others)

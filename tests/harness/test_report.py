@@ -19,6 +19,7 @@ from crossdem.compare.colours import engine_styles
 from crossdem.compare.comparison import compare_runs
 from crossdem.compare.ensemble import Ensemble
 from crossdem.compare.pages import TEMPLATES
+from crossdem.compare.recorded import Record
 
 HOSTILE = "<script>alert('1')</script> \"q\" & | `土のモデル` [bold]$x_1$\x07"
 ENGINES = ("native", "liggghts", "yade")
@@ -162,9 +163,9 @@ def twins(engine, run_case):
     ]
 
 
-def test_engines_that_are_only_recorded_are_in_every_table_and_in_no_picture_of_a_bed(tmp_path):
+def test_engines_recorded_in_tables_are_in_every_table_and_in_no_picture_of_a_bed(tmp_path):
     run_case = synthetic.case(title="A title")
-    recorded = Ensemble.of(twins("yade", run_case))
+    recorded = Record(run_case, Ensemble.of(twins("yade", run_case)), {}, {}, {})
     comparison = compare_runs(run_case, twins("native", run_case), recorded=recorded)
     html, markdown = written(comparison, tmp_path)
     assert "recorded: yade 1.0" in html and "yade against native" in markdown

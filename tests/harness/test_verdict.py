@@ -14,6 +14,7 @@ from crossdem.compare import checks, tables, verdict
 from crossdem.compare.comparison import ComparisonError, compare_runs
 from crossdem.compare.ensemble import Ensemble
 from crossdem.compare.margins import Check
+from crossdem.compare.recorded import Record
 
 ENGINES = ("native", "liggghts", "yade")
 RUN_CASE = synthetic.case()
@@ -70,6 +71,19 @@ def test_enough_seeds_that_settle_nothing_are_inconclusive():
     shifted = runs(seeds=16, factors=(1, 1.1, 1), noise=0.05)
     said = compare_runs(RUN_CASE, shifted).verdict
     assert (said.word, said.exit_code) == (verdict.INCONCLUSIVE, ExitCode.INCONCLUSIVE)
+
+
+@pytest.mark.parametrize("there, told", [(16, "--seeds 16."), (4, "run all engines here")])
+def test_more_packings_than_the_record_has_are_not_asked_of_it(there, told):
+    """Of 2 noisy ones; the record says how many more there would be."""
+    yade = [run for run in runs(noise=0.3) if run.engine == "yade"]
+    here = [run for run in runs(noise=0.3) if run.engine != "yade"]
+    packings = dict.fromkeys(range(1, there + 1), "")
+    recorded = Record(RUN_CASE, Ensemble.of(yade), packings, {}, {}, source="the package data")
+    said = compare_runs(RUN_CASE, here, recorded=recorded).verdict
+    assert (said.word, said.seeds_needed) == (verdict.CONSISTENT, 16)
+    assert told in said.next_step
+    assert ("As the package data has 4 packings" in said.next_step) == (there == 4)
 
 
 def settled(mean_resistance, work=(0.0, 0.125), packings=16, stated=0.08):
@@ -260,7 +274,7 @@ def test_a_twin_whose_gate_failed_keeps_its_engine_from_being_compared():
 
 
 def test_recorded_runs_take_part_and_none_may_be_there_twice():
-    recorded = Ensemble.of(twins(2, engines=("yade",)))
+    recorded = Record(RUN_CASE, Ensemble.of(twins(2, engines=("yade",))), {}, {}, {})
     comparison = compare_runs(RUN_CASE, iter(twins(2)), recorded=recorded)
     assert comparison.engines == ENGINES and comparison.verdict.word == verdict.AGREES
     assert ("yade", "native") in comparison.pairs and comparison.of("yade") == []
