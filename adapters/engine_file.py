@@ -35,7 +35,7 @@ class Described(External):
         self.scheme = table.get("scheme", {})
         self.twin_limit_m = table.get("twin_limit_m")
         self.cost_s = table.get("cost_s", self.cost_s)
-        self.differences = table.get("difference", ())
+        self.difference = table.get("difference", ())
         self.columns = {name: _columns(table[name]) for name in TABLES if name in table}
         if "progress" in table:
             self.samples_file = f"{OUTPUT}/{table['progress']}"

@@ -13,6 +13,7 @@ from .case import CaseError, load_case, varied_table
 from .contract import TABLES, UNITS, unit_of
 from .names import unknown_name
 from .solver import SolverError
+from .toml_text import read_tables
 
 LADDER = Path(__file__).resolve().parent.parent / "reference_cases" / "micro"
 SMALL_CASE = LADDER / "free_fall.toml"  # where a [scheme] is tried: any case would do
@@ -24,15 +25,25 @@ MOST = 1e15  # of a number, in its unit: far above any use
 
 def faults(table: dict, path: Path) -> list[str]:
     """A line for each of the description `table` in the file `path`; none of a sound one."""
-    found = [f"{path}: {fault}" for fault in _faults(table, path.parent)]
+    return _told(table, path, path.parent, KEYS)
+
+
+def class_faults(said: dict, description: str, folder: Path) -> list[str]:
+    """Likewise of what a class says with CLASS_KEYS; `description` names it, `folder` is that of its file."""
+    plain = {key: list(value) if isinstance(value, tuple) else value for key, value in said.items()}
+    return _told(plain, description, folder, CLASS_KEYS)
+
+
+def _told(table: dict, path: Path | str, folder: Path, keys: dict) -> list[str]:
+    found = [f"{path}: {fault}" for fault in _faults(table, folder, keys)]
     if _is_scheme(table.get("scheme")):
         found += _scheme_faults(path, table["scheme"])
     return found
 
 
-def _faults(table: dict, folder: Path) -> Iterator[str]:
+def _faults(table: dict, folder: Path, keys: dict) -> Iterator[str]:
     """Of all but what its [scheme] means; `folder` is that of the description."""
-    yield from _key_faults(table, KEYS)
+    yield from _key_faults(table, keys)
     for key, allowed in (
         ("run", {"case", "packing", "inputs", "out", "step_s"}),
         ("version", set()),
@@ -82,18 +93,29 @@ def _file_faults(files: list[str], folder: Path) -> Iterator[str]:
 
 
 def _difference_faults(entries: list[dict]) -> Iterator[str]:
-    cases = sorted(path.stem for path in LADDER.glob("*.toml"))
+    cases = {path.stem: path for path in sorted(LADDER.glob("*.toml"))}
+    first: dict[tuple[str, str], int] = {}
     for number, entry in enumerate(entries):
         faults = list(_key_faults(entry, DIFFERENCE_KEYS))
         if not faults and entry["tolerance"] >= abs(entry["value"]):
             faults.append("tolerance: one that includes 0 says nothing; give one below |value|")
-        name = entry.get("case")
-        if cases and isinstance(name, str) and name not in cases:
-            faults.append(f"case: {unknown_name('case', name, cases)}")
+        name, quantity = entry.get("case"), entry.get("quantity")
+        if isinstance(name, str) and isinstance(quantity, str):
+            if cases and name not in cases:
+                faults.append(f"case: {unknown_name('case', name, cases)}")
+            elif cases and quantity not in (asked := _answers_asked(cases[name])):
+                faults.append(f"quantity: {unknown_name(f'answer of {name}', quantity, asked)}")
+            elif (same := first.setdefault((name, quantity), number)) != number:
+                faults.append(f"quantity: difference[{same}] has the same; leave one")
         yield from (f"difference[{number}].{fault}" for fault in faults)
 
 
-def _scheme_faults(path: Path, scheme: dict) -> list[str]:
+def _answers_asked(path: Path) -> list[str]:
+    """The quantities that the case in `path`, one of the ladder, has closed forms for."""
+    return [entry["quantity"] for entry in read_tables(path).get("answer", [])]
+
+
+def _scheme_faults(path: Path | str, scheme: dict) -> list[str]:
     """The solver's lines on `scheme`; none where there is no solver, or no case, to ask with."""
     if not SMALL_CASE.exists():
         return []
@@ -220,6 +242,11 @@ KEYS = {
         name: (False, lambda value: isinstance(value, dict), "a table: files, separator, columns")
         for name in TABLES
     },
+}
+# What a class of Python, derived from External, says of itself beside its methods.
+CLASS_KEYS = {
+    key: KEYS[key]
+    for key in ("files", "substeps", "cost_s", "scheme", "twin_limit_m", "difference")
 }
 DIFFERENCE_KEYS = {
     "case": (True, _is_text, "the name of a case of the ladder"),

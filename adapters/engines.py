@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .engine import Engine
 from .engine_file import EngineFileError, read_engine
-from .engine_file_faults import NAME
+from .engine_file_faults import CLASS_KEYS, NAME, class_faults
 from .external import External
 from .liggghts import Liggghts, LiggghtsAveraged
 from .native import Native
@@ -92,4 +92,8 @@ def _of_class(description: str) -> External:
         raise EngineFileError(
             f"{description}: its class has no `name` of small letters, digits and hyphens"
         )
+    said = {key: getattr(engine, key) for key in CLASS_KEYS if hasattr(engine, key)}
+    said = {key: value for key, value in said.items() if value is not None}
+    if found := class_faults(said, description, source.parent):
+        raise EngineFileError("\n".join(found))
     return engine

@@ -32,7 +32,7 @@ class External(Engine):
     twin_limit_m: float | None = (
         None  # how far it may be from that scheme on the ladder; None: not compared
     )
-    differences: Sequence[Mapping] = ()  # as [[difference]] of a case, with the key `case`
+    difference: Sequence[Mapping] = ()  # as [[difference]] of a case, with the key `case`
     samples_file = f"{OUTPUT}/resistance.csv"
     kept_output = ("run.json",)
     cost_s = 1e-5  # generous: a code that is slower is ended only after twenty times that

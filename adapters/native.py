@@ -23,7 +23,7 @@ class Native(Engine):
     program = "crossdem-solver"
     samples_file = f"{OUTPUT}/resistance.csv"
     kept_output = ("ledger.csv", "run.json")
-    cost_s = 1e-8  # of the paper's scheme; the other schemes five times as much
+    cost_s = 1e-8  # of the paper's scheme; of the others, up to five times as much
     by_hand = "crossdem-solver lies in build/release/solver of the crossdem checkout: put that folder on the PATH."
 
     def executable(self) -> str:

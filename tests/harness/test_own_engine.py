@@ -221,6 +221,12 @@ def test_a_fault_of_a_description_names_file_and_key(more, fault, describe):
         ({"value": -0.02}, None),
         ({"case": "spin_strt"}, "case: unknown case 'spin_strt'; did you mean 'spin_start'?"),
         ({"case": 3}, "case: the name of a case"),
+        ({"quantity": "bar_side_force"}, "quantity: unknown answer of pinch 'bar_side_force'; did"),
+        (
+            {"quantity": "restitution"},
+            "quantity: unknown answer of pinch 'restitution'; known: sink",
+        ),
+        ({"quantity": "sink_over_bar_speed"}, "quantity: difference[0] has the same; leave one"),
         ({"value": 0}, "value: by how much it is above"),
         ({"value": True}, "value: by how much it is above"),
         ({"tolerance": -0.01}, "tolerance: how far from `value`"),
@@ -230,14 +236,15 @@ def test_a_fault_of_a_description_names_file_and_key(more, fault, describe):
     ],
 )
 def test_a_fault_of_a_difference_names_entry_and_key(changed, fault, describe):
-    sound = {"case": "spin_start", "quantity": "q", "value": 0.02, "tolerance": 0.01, "reason": "r"}
+    first = {"case": "pinch", "quantity": "sink_over_bar_speed", "value": 0.02, "tolerance": 0.01}
+    first |= {"reason": "r"}
     more = ""
-    for entry in (sound, sound | changed):
+    for entry in (first, first | {"quantity": "bar_side_force_N"} | changed):
         lines = (f"{key} = {json.dumps(value)}\n" for key, value in entry.items())
         more += "[[difference]]\n" + "".join(lines)
     path = describe(more)
     if fault is None:
-        assert len(read_engine(path).differences) == 2
+        assert len(read_engine(path).difference) == 2
         return
     with pytest.raises(EngineFileError) as told:
         read_engine(path)
@@ -305,6 +312,23 @@ def test_every_fault_of_a_description_is_told_at_once(describe, tmp_path):
         (CLASS.replace('"door"', '"native"', 1), "is the name of one of crossdem's own engines"),
         (CLASS.replace('"door"', '"Do or"', 1), "no `name` of small letters"),
         (CLASS.replace("def version", "def said"), "abstract method"),
+        (CLASS.replace('("door_engine.py",)', '("none",)'), 'files.0.: "none" is no file beside'),
+        (
+            CLASS.replace("    files", "    substeps = 0\n    files"),
+            "substeps: how many time steps",
+        ),
+        (
+            CLASS.replace("    files", "    scheme = {'slip_cap': 'totl'}\n    files"),
+            "scheme.slip_cap",
+        ),
+        (
+            CLASS.replace("    files", "    difference = 3\n    files"),
+            "difference: tables with the",
+        ),
+        (
+            CLASS.replace("    files", "    difference = [{}]\n    files"),
+            "difference.0..reason: is",
+        ),
     ],
 )
 def test_a_class_that_cannot_be_used_is_refused_in_words(text, said, describe):
