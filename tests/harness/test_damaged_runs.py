@@ -210,7 +210,13 @@ WHOLE = {
     "scheme": {"slip_cap": "total"},
     "twin_limit_m": 1e-6,
     "difference": [
-        {"case": "pinch", "quantity": "b", "reason": "c", "value": 1.0, "tolerance": 0.1}
+        {
+            "case": "pinch",
+            "quantity": "bar_side_force_N",
+            "reason": "c",
+            "value": 1.0,
+            "tolerance": 0.1,
+        }
     ],
     "motion": {
         "files": "f*.csv",
